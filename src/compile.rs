@@ -1,0 +1,2 @@
+//! The pipeline, one line a stage.
+pub fn compile() {}

@@ -1,0 +1,15 @@
+//! Numbers: the one door to transcendental functions, angles in degrees, and tolerances.
+//!
+//! Promise: every function here gives the same bits on every machine (they are `libm`'s, plain IEEE
+//! arithmetic without fused operations). The standard library's `sin`, `powf`, `hypot`, ... differ between
+//! platforms and are banned by lint. Not promised: correctly rounded results; `libm` is within 1 ulp.
+
+mod angle;
+mod elementary;
+mod tolerance;
+
+pub use angle::{cos_degrees, sin_cos_degrees, sin_degrees, tan_degrees};
+pub use elementary::{
+    acos, asin, atan, atan2, cbrt, cos, cosh, exp, hypot, ln, pow, sin, sin_cos, sinh, tan, tanh,
+};
+pub use tolerance::{Bounds, single_rounding};

@@ -1,0 +1,43 @@
+//! Kiln bakes declarative model specs (TOML text) into optimized, indexed glTF.
+//!
+//! # The pipeline
+//! [`compile()`] is the map: text becomes a `Spec`, the `Spec` an exact `Model`, the `Model` a discrete
+//! `Scene` at a tolerance, the `Scene` checked bytes, and the bytes a report that is measured on them.
+//!
+//! # Import table
+//! A module may use only the modules named in its row (`tests/architecture.rs` enforces the table).
+//!
+//! | module | may use |
+//! | --- | --- |
+//! | `geometry::number` | |
+//! | `geometry::curve` | `geometry::number` |
+//! | `geometry::mesh` | `geometry::number` |
+//! | `geometry::surface` | `geometry::number`, `geometry::curve` |
+//! | `geometry::tessellate` | `geometry::number`, `geometry::curve`, `geometry::mesh`, `geometry::surface` |
+//! | `import` | `geometry::number`, `geometry::mesh` |
+//! | `model` | `geometry` |
+//! | `scene` | `geometry::number`, `geometry::mesh` |
+//! | `realize` | `geometry`, `model`, `scene` |
+//! | `optimize` | `geometry::number`, `geometry::mesh`, `scene` |
+//! | `gltf` | `geometry::number`, `geometry::mesh`, `scene` |
+//! | `report` | `geometry`, `model`, `scene`, `gltf` |
+//! | `language` | `geometry::number` |
+//! | `build` | `geometry`, `import`, `language`, `model` |
+//! | `compile` | everything but `cli` |
+//! | `cli` | everything |
+
+pub mod build;
+#[cfg(feature = "cli")]
+pub mod cli;
+pub mod compile;
+pub mod geometry;
+pub mod gltf;
+pub mod import;
+pub mod language;
+pub mod model;
+pub mod optimize;
+pub mod realize;
+pub mod report;
+pub mod scene;
+
+pub use compile::compile;

@@ -1,0 +1,5 @@
+//! The `kiln` command: arguments in, exit code out.
+
+fn main() -> std::process::ExitCode {
+    kiln::cli::run()
+}
