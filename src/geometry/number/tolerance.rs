@@ -1,10 +1,9 @@
 //! Boxes, and what rounding to single precision costs.
 
 use glam::DVec3;
-use serde::Serialize;
 
 /// An axis-aligned box; empty when `min` exceeds `max`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Least corner, metres.
     pub min: DVec3,
