@@ -1,1 +1,116 @@
-//! The curve kernels.
+//! Curves: points and derivatives over a parameter, with proved bounds on what a chord leaves out.
+//!
+//! Promise: every curve is continuous over its domain, evaluates in constant or logarithmic time, and bounds
+//! the deviation of any chord rigorously ([`Curve::chord_deviation`], up to rounding of a few units in the
+//! last place). Between two [`Curve::joints`] its direction is continuous. Not promised: unit speed, or that
+//! the curve does not cross itself.
+//!
+//! Plane curves live in z = 0.
+
+mod any;
+mod bezier;
+mod ellipse;
+mod helix;
+mod length;
+mod mapped;
+mod nearest;
+mod path;
+mod polyline;
+mod spline;
+
+pub use any::AnyCurve;
+pub use bezier::{BezierError, BezierSpline};
+pub use ellipse::EllipseArc;
+pub use helix::Helix;
+pub use length::{length, length_between};
+pub use mapped::{Reversed, Transformed};
+pub use nearest::distance_within;
+pub use path::{Continuity, Path, classify};
+pub use polyline::Polyline;
+pub use spline::{Parametrization, SplineError, interpolate, interpolate_closed, parameters};
+
+use glam::DVec3;
+
+/// The parameter interval of a curve, `start` < `end`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Domain {
+    /// Least parameter.
+    pub start: f64,
+    /// Greatest parameter.
+    pub end: f64,
+}
+
+impl Domain {
+    /// Difference of the two ends.
+    #[must_use]
+    pub fn span(&self) -> f64 {
+        self.end - self.start
+    }
+
+    /// The parameter at `fraction` (0 to 1) of the domain; exactly the end at 1.
+    #[must_use]
+    pub fn at(&self, fraction: f64) -> f64 {
+        self.start * (1.0 - fraction) + self.end * fraction
+    }
+}
+
+/// Point and derivatives by the parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jet {
+    /// Position, metres.
+    pub point: DVec3,
+    /// First derivative.
+    pub first: DVec3,
+    /// Second derivative.
+    pub second: DVec3,
+}
+
+/// From which side a curve is evaluated where it is not smooth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// As the end of what comes before.
+    Before,
+    /// As the start of what comes after.
+    After,
+}
+
+/// A parametric curve in space.
+pub trait Curve: Send + Sync {
+    /// Parameter interval.
+    fn domain(&self) -> Domain;
+
+    /// Whether the end meets the start.
+    fn is_closed(&self) -> bool;
+
+    /// Point and derivatives at `t`; where the curve is not smooth, of the named side. A parameter outside
+    /// the domain is taken as the nearer end.
+    fn evaluate(&self, t: f64, side: Side) -> Jet;
+
+    /// Parameters strictly inside the domain, increasing, where the direction jumps. A discretization must
+    /// keep these points.
+    fn joints(&self) -> Vec<f64>;
+
+    /// A proved bound on the distance between the chord from `from` to `to` and the part of the curve it
+    /// stands for: every point of the chord is that close to the curve and every point of the curve that
+    /// close to the chord. No joint may lie strictly between. Zero means straight.
+    fn chord_deviation(&self, from: f64, to: f64) -> f64;
+
+    /// Position at `t`.
+    fn point(&self, t: f64) -> DVec3 {
+        self.evaluate(t, Side::After).point
+    }
+
+    /// Unit direction at `t` from the named side. Where the first derivative vanishes (a cusp, a doubled
+    /// control point) it is the limit along the curve, by a short step into that side.
+    fn direction(&self, t: f64, side: Side) -> DVec3 {
+        let jet = self.evaluate(t, side);
+        let domain = self.domain();
+        let scale = jet.second.length() * domain.span();
+        if jet.first.length() > 1e-9 * scale && jet.first.length() > 0.0 {
+            return jet.first.normalize();
+        }
+        let step = 1e-6 * domain.span() * if side == Side::After { 1.0 } else { -1.0 };
+        let neighbor = self.evaluate(t + step, side).point;
+        ((neighbor - jet.point) * step.signum()).normalize_or(DVec3::X)
+    }
+}

@@ -1,0 +1,60 @@
+//! One type for every kind of curve.
+
+use super::{
+    BezierSpline, Curve, Domain, EllipseArc, Helix, Jet, Path, Polyline, Reversed, Side, Transformed,
+};
+
+/// A curve of any kind.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AnyCurve {
+    /// Straight segments.
+    Polyline(Polyline),
+    /// A circle, an ellipse, or an arc of one.
+    Ellipse(EllipseArc),
+    /// A helix.
+    Helix(Helix),
+    /// Bezier pieces, interpolating splines among them.
+    Bezier(BezierSpline),
+    /// Curves end to start.
+    Path(Path),
+    /// A curve under an affine map.
+    Transformed(Transformed),
+    /// A curve backwards.
+    Reversed(Reversed),
+}
+
+macro_rules! each_kind {
+    ($self:ident, $curve:ident => $body:expr) => {
+        match $self {
+            AnyCurve::Polyline($curve) => $body,
+            AnyCurve::Ellipse($curve) => $body,
+            AnyCurve::Helix($curve) => $body,
+            AnyCurve::Bezier($curve) => $body,
+            AnyCurve::Path($curve) => $body,
+            AnyCurve::Transformed($curve) => $body,
+            AnyCurve::Reversed($curve) => $body,
+        }
+    };
+}
+
+impl Curve for AnyCurve {
+    fn domain(&self) -> Domain {
+        each_kind!(self, curve => curve.domain())
+    }
+
+    fn is_closed(&self) -> bool {
+        each_kind!(self, curve => curve.is_closed())
+    }
+
+    fn evaluate(&self, t: f64, side: Side) -> Jet {
+        each_kind!(self, curve => curve.evaluate(t, side))
+    }
+
+    fn joints(&self) -> Vec<f64> {
+        each_kind!(self, curve => curve.joints())
+    }
+
+    fn chord_deviation(&self, from: f64, to: f64) -> f64 {
+        each_kind!(self, curve => curve.chord_deviation(from, to))
+    }
+}

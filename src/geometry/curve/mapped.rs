@@ -1,0 +1,108 @@
+//! Curves under an affine map, and curves run backwards.
+
+use glam::DAffine3;
+
+use super::{AnyCurve, Curve, Domain, Jet, Side};
+
+/// A curve under an affine map, with the same parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Transformed {
+    curve: Box<AnyCurve>,
+    map: DAffine3,
+    stretch: f64,
+}
+
+impl Transformed {
+    /// `curve` under `map`.
+    #[must_use]
+    pub fn new(curve: AnyCurve, map: DAffine3) -> Self {
+        // The Frobenius norm bounds the greatest stretch; for a rotation with one scale the columns are
+        // perpendicular and equally long, so that the longest column is the stretch itself.
+        let m = map.matrix3;
+        let columns = [m.x_axis, m.y_axis, m.z_axis];
+        let longest = columns.iter().map(|column| column.length()).fold(0.0, f64::max);
+        let skew = m.x_axis.dot(m.y_axis).abs() + m.y_axis.dot(m.z_axis).abs() + m.z_axis.dot(m.x_axis).abs();
+        let stretch = if skew <= 1e-12 * longest * longest {
+            longest
+        } else {
+            columns.iter().map(|column| column.length_squared()).sum::<f64>().sqrt()
+        };
+        Self { curve: Box::new(curve), map, stretch }
+    }
+}
+
+impl Curve for Transformed {
+    fn domain(&self) -> Domain {
+        self.curve.domain()
+    }
+
+    fn is_closed(&self) -> bool {
+        self.curve.is_closed()
+    }
+
+    fn evaluate(&self, t: f64, side: Side) -> Jet {
+        let jet = self.curve.evaluate(t, side);
+        Jet {
+            point: self.map.transform_point3(jet.point),
+            first: self.map.transform_vector3(jet.first),
+            second: self.map.transform_vector3(jet.second),
+        }
+    }
+
+    fn joints(&self) -> Vec<f64> {
+        self.curve.joints()
+    }
+
+    fn chord_deviation(&self, from: f64, to: f64) -> f64 {
+        self.curve.chord_deviation(from, to) * self.stretch
+    }
+}
+
+/// A curve run from its end to its start over the same domain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reversed {
+    curve: Box<AnyCurve>,
+}
+
+impl Reversed {
+    /// `curve`, backwards.
+    #[must_use]
+    pub fn new(curve: AnyCurve) -> Self {
+        Self { curve: Box::new(curve) }
+    }
+
+    fn mirrored(&self, t: f64) -> f64 {
+        let domain = self.curve.domain();
+        if t <= domain.start {
+            domain.end
+        } else if t >= domain.end {
+            domain.start
+        } else {
+            domain.start + (domain.end - t)
+        }
+    }
+}
+
+impl Curve for Reversed {
+    fn domain(&self) -> Domain {
+        self.curve.domain()
+    }
+
+    fn is_closed(&self) -> bool {
+        self.curve.is_closed()
+    }
+
+    fn evaluate(&self, t: f64, side: Side) -> Jet {
+        let opposite = if side == Side::Before { Side::After } else { Side::Before };
+        let jet = self.curve.evaluate(self.mirrored(t), opposite);
+        Jet { point: jet.point, first: -jet.first, second: jet.second }
+    }
+
+    fn joints(&self) -> Vec<f64> {
+        self.curve.joints().into_iter().rev().map(|t| self.mirrored(t)).collect()
+    }
+
+    fn chord_deviation(&self, from: f64, to: f64) -> f64 {
+        self.curve.chord_deviation(self.mirrored(to), self.mirrored(from))
+    }
+}

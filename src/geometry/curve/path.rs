@@ -1,0 +1,158 @@
+//! A curve made of curves, end to start.
+
+use glam::DVec3;
+
+use super::{AnyCurve, Curve, Domain, Jet, Side};
+
+/// How well two curves join.
+///
+/// Source: B. Barsky, T. DeRose, Geometric continuity of parametric curves, IEEE CG&A 10 (1990).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Continuity {
+    /// The ends do not meet.
+    Gap,
+    /// The ends meet.
+    G0,
+    /// Directions agree.
+    G1,
+    /// First derivatives agree.
+    C1,
+    /// Directions and curvatures agree.
+    G2,
+    /// First and second derivatives agree.
+    C2,
+}
+
+/// Classifies the joint between the end of one curve and the start of the next, with `size` the length that
+/// rounding is measured against.
+#[must_use]
+pub fn classify(before: &Jet, after: &Jet, size: f64) -> Continuity {
+    const ROUNDING: f64 = 1e-9;
+    if before.point.distance(after.point) > ROUNDING * size {
+        return Continuity::Gap;
+    }
+    let (first, second) = (before.first.normalize_or_zero(), after.first.normalize_or_zero());
+    if first == DVec3::ZERO || second == DVec3::ZERO || first.distance(second) > ROUNDING {
+        return Continuity::G0;
+    }
+    let speed = before.first.length().max(after.first.length());
+    let same_first = before.first.distance(after.first) <= ROUNDING * speed;
+    let bend = before.second.length().max(after.second.length());
+    if same_first && before.second.distance(after.second) <= ROUNDING * bend.max(speed) {
+        return Continuity::C2;
+    }
+    let curvature = |jet: &Jet| {
+        let speed = jet.first.length_squared();
+        let direction = jet.first / speed.sqrt();
+        (jet.second - direction * jet.second.dot(direction)) / speed
+    };
+    if curvature(before).distance(curvature(after)) * size <= ROUNDING * 1e3 {
+        return Continuity::G2;
+    }
+    if same_first { Continuity::C1 } else { Continuity::G1 }
+}
+
+/// Curves end to start; curve k covers parameters k to k + 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    curves: Vec<AnyCurve>,
+    closed: bool,
+}
+
+impl Path {
+    /// A path of at least one curve whose ends meet; `None` for no curve.
+    #[must_use]
+    pub fn new(curves: Vec<AnyCurve>) -> Option<Self> {
+        let start = curves.first()?.evaluate(curves[0].domain().start, Side::After).point;
+        let last = curves.last()?;
+        let end = last.evaluate(last.domain().end, Side::Before).point;
+        let closed = start == end;
+        Some(Self { curves, closed })
+    }
+
+    /// The curves it is made of.
+    #[must_use]
+    pub fn curves(&self) -> &[AnyCurve] {
+        &self.curves
+    }
+
+    /// How the curve before joint `k` (1 to count - 1) meets the one after. At 0 the seam of a closed path.
+    #[must_use]
+    pub fn continuity(&self, joint: usize) -> Continuity {
+        let count = self.curves.len();
+        let t = joint as f64;
+        let before = if joint == 0 { count as f64 } else { t };
+        let (before, after) = (self.evaluate(before, Side::Before), self.evaluate(t, Side::After));
+        let size = self.curves.iter().map(|curve| {
+            let domain = curve.domain();
+            curve.point(domain.start).distance(curve.evaluate(domain.end, Side::Before).point)
+        });
+        classify(&before, &after, size.fold(0.0, f64::max))
+    }
+
+    fn locate(&self, t: f64, side: Side) -> (usize, f64) {
+        let last = self.curves.len() - 1;
+        let t = t.clamp(0.0, (last + 1) as f64);
+        let mut index = t.floor();
+        if side == Side::Before && index == t && t > 0.0 {
+            index -= 1.0;
+        }
+        let index = index.min(last as f64);
+        (index as usize, t - index)
+    }
+}
+
+impl Curve for Path {
+    fn domain(&self) -> Domain {
+        Domain { start: 0.0, end: self.curves.len() as f64 }
+    }
+
+    fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    fn evaluate(&self, t: f64, side: Side) -> Jet {
+        let (index, local) = self.locate(t, side);
+        let curve = &self.curves[index];
+        let domain = curve.domain();
+        let jet = curve.evaluate(domain.at(local), side);
+        let rate = domain.span();
+        Jet { point: jet.point, first: jet.first * rate, second: jet.second * (rate * rate) }
+    }
+
+    fn joints(&self) -> Vec<f64> {
+        let mut joints = Vec::new();
+        for (index, curve) in self.curves.iter().enumerate() {
+            let domain = curve.domain();
+            if index > 0 && self.continuity(index) < Continuity::G1 {
+                joints.push(index as f64);
+            }
+            let inner = curve.joints().into_iter().map(|t| index as f64 + (t - domain.start) / domain.span());
+            joints.extend(inner);
+        }
+        joints
+    }
+
+    fn chord_deviation(&self, from: f64, to: f64) -> f64 {
+        let ((first, start), (last, end)) = (self.locate(from, Side::After), self.locate(to, Side::Before));
+        let part = |index: usize, start: f64, end: f64| {
+            let domain = self.curves[index].domain();
+            self.curves[index].chord_deviation(domain.at(start), domain.at(end))
+        };
+        if first >= last {
+            return part(first, start, end);
+        }
+        let chord = (self.point(from), self.evaluate(to, Side::Before).point);
+        let mut deviation = 0.0_f64;
+        let mut previous = 0.0;
+        for index in first..=last {
+            let start = if index == first { start } else { 0.0 };
+            let end = if index == last { end } else { 1.0 };
+            let reached = self.evaluate(index as f64 + end, Side::Before).point;
+            let distance = super::bezier::distance_to_segment(reached, chord);
+            deviation = deviation.max(distance.max(previous) + part(index, start, end));
+            previous = distance;
+        }
+        deviation
+    }
+}
