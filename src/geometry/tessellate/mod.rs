@@ -1,1 +1,116 @@
-//! The tessellate kernels.
+//! From continuous to discrete: curves become stations, surfaces become triangles within a tolerance.
+//!
+//! Promise: each tessellation carries a bound on the distance between its triangles and the surface they
+//! stand for, in both directions, before positions are rounded to single precision, and says whether the
+//! bound is proved or sampled; points that triangles share are shared, so nothing cracks; no triangle has
+//! zero area unless the surface itself is degenerate there. The tolerance is spent here and nowhere else.
+//! Not promised: that the result does not cross itself where the surface does.
+
+mod cap;
+mod crossing;
+mod cuboid;
+mod discretize;
+mod extrude;
+mod revolve;
+mod ring;
+mod sweep;
+
+pub use crossing::{Crossing, first_crossing};
+pub use cuboid::cuboid;
+pub use discretize::{Density, Station, arc_lengths, discretize};
+pub use extrude::{Extrusion, extrude};
+pub use revolve::{Revolution, revolve};
+pub use sweep::{Sweep, sweep};
+
+use thiserror::Error;
+
+use super::mesh::Mesh;
+
+/// How a bound on the deviation is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Evidence {
+    /// The triangles are the shape.
+    Exact,
+    /// Follows from bounds on derivatives or closed forms.
+    Proved,
+    /// The largest of dense samples, with a margin.
+    Sampled,
+}
+
+/// A bound on the distance between a mesh and the surface it stands for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// Greatest distance, metres.
+    pub bound: f64,
+    /// How it is known.
+    pub evidence: Evidence,
+}
+
+impl Deviation {
+    /// A mesh that is the shape.
+    pub const NONE: Self = Self { bound: 0.0, evidence: Evidence::Exact };
+
+    /// The deviation of two meshes together.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self { bound: self.bound.max(other.bound), evidence: self.evidence.max(other.evidence) }
+    }
+}
+
+/// A mesh and how far it is from its source.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tessellation {
+    /// The triangles; one run of origin 0.
+    pub mesh: Mesh,
+    /// Distance from the source.
+    pub deviation: Deviation,
+}
+
+/// How finely a surface is to be cut and what its vertices carry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Detail {
+    /// Tolerance in metres, or a fixed grid.
+    pub density: SurfaceDensity,
+    /// Joints that turn by more than this many degrees are hard edges.
+    pub crease_angle: f64,
+    /// Whether vertices carry texture coordinates; without them no vertex is split for a seam.
+    pub uv: bool,
+    /// Most triangles allowed.
+    pub triangle_limit: u64,
+}
+
+/// How finely a surface is cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SurfaceDensity {
+    /// As coarse as this many metres allow.
+    Tolerance(f64),
+    /// A grid of this many steps across and along.
+    Grid {
+        /// Steps around (revolve, sweep) or along the outline (extrude).
+        u: u32,
+        /// Steps along the profile (revolve), the path (sweep) or the height (extrude).
+        v: u32,
+    },
+}
+
+/// Why a surface was not tessellated.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum TessellateError {
+    /// More triangles than allowed, found before they were made.
+    #[error("this would make at least {needed} triangles, and the limit is {limit}")]
+    TooMany {
+        /// A lower bound on the number.
+        needed: u64,
+        /// The limit.
+        limit: u64,
+    },
+    /// A cap could not be triangulated.
+    #[error("the flat face at its end cannot be triangulated: {reason}")]
+    Cap {
+        /// What the triangulation said.
+        reason: String,
+    },
+    /// The outline encloses no area.
+    #[error("the outline encloses no area")]
+    NoArea,
+}

@@ -1,0 +1,403 @@
+//! Sections carried along paths.
+//!
+//! The section is cut into chords (deviation e1 in its plane, proved), and stations are set along the path.
+//! The lines that the section's points trace have no closed form, so what their chords and the diagonals of
+//! the cells leave out (e2) is measured at the middle of each, the place of the greatest deviation of a
+//! smooth curve, with a margin; e1 + e2 is `Sampled`, except on straight paths without twist, where e2 is
+//! zero and the bound is proved. At corners of the path the section stands in the bisecting plane (a mitre).
+
+use glam::{DVec2, DVec3};
+
+use super::cap::{CapLoop, Facing, add_cap, twice_area};
+use super::discretize::{Density, Station, arc_lengths, discretize};
+use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessellation};
+use crate::geometry::curve::{AnyCurve, Curve, Domain, Jet, Side};
+use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+use crate::geometry::number::atan2;
+use crate::geometry::surface::{Section, SweptSurface};
+
+/// A section carried along a path by rotation-minimizing frames.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    /// The section, x along the frame's side, y along its up.
+    pub profile: AnyCurve,
+    /// The path.
+    pub path: AnyCurve,
+    /// Turn from start to end, degrees.
+    pub twist: f64,
+    /// Whether the ends of an open path are closed by flat faces, where the section is closed.
+    pub caps: bool,
+}
+
+/// Measured deviations are raised by this share: between the samples a smooth curve can exceed them by a
+/// term of the next order.
+const MARGIN: f64 = 1.05;
+
+/// Carries a section into triangles. Anchor sources: the wall is 0, the first end 1, the last end 2.
+///
+/// # Errors
+/// When the limit would be passed, the section encloses no area, or an end cannot be triangulated.
+pub fn sweep(shape: &Sweep, detail: &Detail) -> Result<Tessellation, TessellateError> {
+    let surface = SweptSurface::new(shape.profile.clone(), shape.path.clone(), shape.twist);
+    let SurfaceDensity::Tolerance(tolerance) = detail.density else {
+        return Plan::new(shape, &surface, detail, 0.0)?.build(shape, detail);
+    };
+    let mut aim = tolerance / 2.0;
+    let mut plan = Plan::new(shape, &surface, detail, aim)?;
+    for _ in 0..6 {
+        let bound = plan.deviation.bound;
+        if bound <= tolerance {
+            break;
+        }
+        aim *= (tolerance / bound).min(0.95) * 0.98;
+        plan = Plan::new(shape, &surface, detail, aim)?;
+    }
+    plan.build(shape, detail)
+}
+
+/// The path as the lines traced by the section see it: chords are judged by all of them.
+struct Traced<'a> {
+    surface: &'a SweptSurface,
+    offsets: Vec<DVec2>,
+}
+
+impl Curve for Traced<'_> {
+    fn domain(&self) -> Domain {
+        self.surface.path.domain()
+    }
+
+    fn is_closed(&self) -> bool {
+        self.surface.path.is_closed()
+    }
+
+    fn evaluate(&self, t: f64, side: Side) -> Jet {
+        self.surface.path.evaluate(t, side)
+    }
+
+    fn joints(&self) -> Vec<f64> {
+        self.surface.path.joints()
+    }
+
+    fn chord_deviation(&self, from: f64, to: f64) -> f64 {
+        let path = &self.surface.path;
+        if self.surface.frames.twist_rate() == 0.0 && path.chord_deviation(from, to) == 0.0 {
+            return 0.0;
+        }
+        let (start, end) = (self.surface.section(from, Side::After), self.surface.section(to, Side::Before));
+        let mut deviation = 0.0_f64;
+        for part in [0.25, 0.5, 0.75] {
+            let middle = self.surface.section(from + (to - from) * part, Side::After);
+            for offset in &self.offsets {
+                let chord = (start.point(offset.x, offset.y), end.point(offset.x, offset.y));
+                deviation = deviation.max(across(middle.point(offset.x, offset.y), chord));
+            }
+        }
+        deviation * MARGIN
+    }
+}
+
+/// Distance of a point from the line of a chord.
+fn across(point: DVec3, (start, end): (DVec3, DVec3)) -> f64 {
+    let direction = (end - start).normalize_or_zero();
+    let away = point - start;
+    (away - direction * away.dot(direction)).length()
+}
+
+/// Section and path, cut, before any vertex is made.
+struct Plan {
+    profile: Vec<Station>,
+    profile_along: Vec<f64>,
+    profile_closed: bool,
+    path: Vec<Station>,
+    path_along: Vec<f64>,
+    path_closed: bool,
+    /// Sections before and after each station of the path; equal but at corners.
+    sections: Vec<(Section, Section)>,
+    deviation: Deviation,
+}
+
+impl Plan {
+    fn new(
+        shape: &Sweep,
+        surface: &SweptSurface,
+        detail: &Detail,
+        aim: f64,
+    ) -> Result<Self, TessellateError> {
+        let (across, along) = match detail.density {
+            SurfaceDensity::Tolerance(_) => (Density::Tolerance(aim), Density::Tolerance(aim)),
+            SurfaceDensity::Grid { u, v } => (Density::Count(u), Density::Count(v)),
+        };
+        let limit = detail.triangle_limit;
+        let mut profile = discretize(&shape.profile, across, limit)?;
+        let profile_closed = shape.profile.is_closed();
+        if profile_closed && (profile.len() < 4 || twice_area(&places(&profile)) == 0.0) {
+            return Err(TessellateError::NoArea);
+        }
+        let lengths = |curve: &AnyCurve, stations: &[Station]| {
+            if !detail.uv {
+                return vec![0.0; stations.len()];
+            }
+            let lengths = arc_lengths(curve, stations);
+            let whole = lengths[lengths.len() - 1].max(f64::MIN_POSITIVE);
+            lengths.iter().map(|length| length / whole).collect()
+        };
+        let mut profile_along = lengths(&shape.profile, &profile);
+        if profile_closed && twice_area(&places(&profile)) < 0.0 {
+            super::extrude::reverse(&mut profile);
+            profile_along = profile_along.iter().rev().map(|part| 1.0 - part).collect();
+        }
+        let path = match along {
+            Density::Count(_) => discretize(&shape.path, along, limit)?,
+            Density::Tolerance(_) => {
+                let traced = Traced { surface, offsets: spread(&profile) };
+                discretize(&traced, along, limit)?
+            }
+        };
+        let needed = 2 * (profile.len() as u64 - 1) * (path.len() as u64 - 1);
+        if needed > limit {
+            return Err(TessellateError::TooMany { needed, limit });
+        }
+        let mut plan = Self {
+            profile_along,
+            profile_closed,
+            path_along: lengths(&shape.path, &path),
+            path_closed: shape.path.is_closed(),
+            sections: sections(surface, &path),
+            profile,
+            path,
+            deviation: Deviation::NONE,
+        };
+        plan.deviation = plan.measure(surface);
+        Ok(plan)
+    }
+
+    /// e1 of the section's chords plus e2 along the path.
+    fn measure(&self, surface: &SweptSurface) -> Deviation {
+        let e1 = self.profile.iter().map(|station| station.deviation).fold(0.0, f64::max);
+        let mut e2 = 0.0_f64;
+        for row in 0..self.path.len() - 1 {
+            let (from, to) = (self.path[row].t, self.path[row + 1].t);
+            if surface.frames.twist_rate() == 0.0 && surface.path.chord_deviation(from, to) == 0.0 {
+                continue;
+            }
+            let middle = surface.section((from + to) / 2.0, Side::After);
+            e2 = e2.max(self.cell_deviation(row, &middle));
+        }
+        let evidence = match (e1, e2) {
+            (0.0, 0.0) => Evidence::Exact,
+            (_, 0.0) => Evidence::Proved,
+            _ => Evidence::Sampled,
+        };
+        Deviation { bound: e1 + e2 * MARGIN, evidence }
+    }
+
+    /// Greatest distance from the middles of chords and diagonals between two rows to the surface.
+    fn cell_deviation(&self, row: usize, middle: &Section) -> f64 {
+        let (start, end) = (&self.sections[row].1, &self.sections[row + 1].0);
+        let mut deviation = 0.0_f64;
+        let place = |column: usize| self.profile[column].point;
+        let mut before = place(0);
+        for column in 0..self.profile.len() {
+            let here = place(column);
+            let chord = (start.point(here.x, here.y), end.point(here.x, here.y));
+            let between = (chord.0 + chord.1) / 2.0;
+            deviation = deviation.max(self.normal_distance(between, middle, (here, here), column));
+            if column > 0 {
+                let diagonal = (start.point(before.x, before.y) + chord.1) / 2.0;
+                deviation = deviation.max(self.normal_distance(diagonal, middle, (before, here), column));
+            }
+            before = here;
+        }
+        deviation
+    }
+
+    /// Distance across the surface of `point` from the middle of two points of a section.
+    fn normal_distance(
+        &self,
+        point: DVec3,
+        section: &Section,
+        (first, second): (DVec3, DVec3),
+        column: usize,
+    ) -> f64 {
+        let place = (first + second) / 2.0;
+        let direction = if first == second { self.profile[column].after } else { second - first };
+        let normal = section.normal((place.x, place.y), (direction.x, direction.y));
+        let away = point - section.point(place.x, place.y);
+        if first == second && self.profile[column].before != self.profile[column].after {
+            // At a corner of the section there is no one normal: all that is not along the path counts.
+            return (away - section.frame.along * away.dot(section.frame.along)).length();
+        }
+        away.dot(normal).abs()
+    }
+
+    fn build(self, shape: &Sweep, detail: &Detail) -> Result<Tessellation, TessellateError> {
+        let mut mesh = Mesh::default();
+        let (columns, rows) = (self.point_columns(), self.point_rows());
+        for row in 0..rows {
+            let ring: Vec<DVec3> = (0..columns).map(|column| self.position(row, column)).collect();
+            mesh.points.extend(ring);
+        }
+        for (first, last) in hard_runs(&self.path, detail) {
+            for (left, right) in hard_runs(&self.profile, detail) {
+                self.patch(&mut mesh, (first, last), (left, right), detail);
+            }
+        }
+        if shape.caps && self.profile_closed && !self.path_closed {
+            self.cap(&mut mesh, 0, detail)?;
+            self.cap(&mut mesh, rows - 1, detail)?;
+        }
+        mesh.runs = vec![Run { origin: 0, end: mesh.triangles.len() as u32 }];
+        Ok(Tessellation { mesh, deviation: self.deviation })
+    }
+
+    fn point_columns(&self) -> usize {
+        self.profile.len() - usize::from(self.profile_closed)
+    }
+
+    fn point_rows(&self) -> usize {
+        self.path.len() - usize::from(self.path_closed)
+    }
+
+    fn point_index(&self, row: usize, column: usize) -> PointIndex {
+        let (columns, rows) = (self.point_columns(), self.point_rows());
+        PointIndex((row % rows * columns + column % columns) as u32)
+    }
+
+    /// A point of the section at a row, at corners in the bisecting plane.
+    fn position(&self, row: usize, column: usize) -> DVec3 {
+        let (before, after) = &self.sections[row];
+        let place = self.profile[column].point;
+        let plain = after.point(place.x, place.y);
+        if before.frame.along == after.frame.along {
+            return plain;
+        }
+        let bisector = before.frame.along + after.frame.along;
+        let lean = after.frame.along.dot(bisector);
+        plain - after.frame.along * ((plain - after.origin).dot(bisector) / lean)
+    }
+
+    /// Vertices and triangles between two hard rows and two hard columns.
+    fn patch(
+        &self,
+        mesh: &mut Mesh,
+        (first, last): (usize, usize),
+        (left, right): (usize, usize),
+        detail: &Detail,
+    ) {
+        let whole = |from: usize, to: usize, count: usize, closed: bool| closed && from == 0 && to == count - 1;
+        let share = |round: bool| round && !detail.uv;
+        let round_path = share(whole(first, last, self.path.len(), self.path_closed))
+            && self.turn(&self.path[0]) <= detail.crease_angle;
+        let round_profile = share(whole(left, right, self.profile.len(), self.profile_closed))
+            && self.turn(&self.profile[0]) <= detail.crease_angle;
+        let rows = last - first + usize::from(!round_path);
+        let columns = right - left + usize::from(!round_profile);
+        let base = mesh.vertices.len() as u32;
+        for row in first..first + rows {
+            for column in left..left + columns {
+                let place = ((row, row == first, row == last), (column, column == left, column == right));
+                mesh.vertices.push(self.vertex(place, detail));
+            }
+        }
+        let at = |row: usize, column: usize| VertexIndex(base + (row % rows * columns + column % columns) as u32);
+        for row in 0..last - first {
+            for column in 0..right - left {
+                let corners =
+                    [at(row, column), at(row, column + 1), at(row + 1, column + 1), at(row + 1, column)];
+                mesh.triangles.push([corners[0], corners[1], corners[2]]);
+                mesh.triangles.push([corners[0], corners[2], corners[3]]);
+            }
+        }
+    }
+
+    fn turn(&self, station: &Station) -> f64 {
+        atan2(station.before.cross(station.after).length(), station.before.dot(station.after)).to_degrees()
+    }
+
+    fn vertex(
+        &self,
+        ((row, first, last), (column, left, right)): ((usize, bool, bool), (usize, bool, bool)),
+        detail: &Detail,
+    ) -> Vertex {
+        let station = &self.profile[column];
+        let hard = self.turn(station) > detail.crease_angle;
+        let direction = match (hard, left, right) {
+            (true, true, _) => station.after,
+            (true, _, true) => station.before,
+            _ => (station.before + station.after).normalize_or(station.after),
+        };
+        let (before, after) = &self.sections[row];
+        let place = (station.point.x, station.point.y);
+        let direction = (direction.x, direction.y);
+        let hard_row = self.turn(&self.path[row]) > detail.crease_angle;
+        let normal = match (hard_row, first, last) {
+            (true, true, _) => after.normal(place, direction),
+            (true, _, true) => before.normal(place, direction),
+            _ if before.frame.along == after.frame.along => after.normal(place, direction),
+            _ => (before.normal(place, direction) + after.normal(place, direction)).normalize_or(DVec3::Y),
+        };
+        let uv = DVec2::new(self.profile_along[column], 1.0 - self.path_along[row]);
+        Vertex {
+            point: self.point_index(row, column),
+            normal,
+            uv: if detail.uv { uv } else { DVec2::ZERO },
+            anchor: Anchor { source: 0, u: station.t, v: self.path[row].t },
+        }
+    }
+
+    fn cap(&self, mesh: &mut Mesh, row: usize, detail: &Detail) -> Result<(), TessellateError> {
+        let end = row > 0;
+        let columns = self.point_columns();
+        let outline = CapLoop {
+            place: places(&self.profile),
+            points: (0..columns).map(|column| self.point_index(row, column)).collect(),
+        };
+        let along = self.sections[row].0.frame.along;
+        let facing = Facing { normal: if end { along } else { -along }, mirrored: !end };
+        add_cap(mesh, &[outline], facing, 1 + u32::from(end), detail.uv)
+    }
+}
+
+/// Places of a closed outline, its end left out.
+fn places(stations: &[Station]) -> Vec<DVec2> {
+    stations[..stations.len() - 1].iter().map(|station| station.point.truncate()).collect()
+}
+
+/// At most sixteen points of the section that stand for all.
+fn spread(profile: &[Station]) -> Vec<DVec2> {
+    let step = profile.len().div_ceil(16);
+    profile.iter().step_by(step).map(|station| station.point.truncate()).collect()
+}
+
+fn sections(surface: &SweptSurface, path: &[Station]) -> Vec<(Section, Section)> {
+    let last = path.len() - 1;
+    let closed = surface.path.is_closed();
+    let mut all: Vec<(Section, Section)> = path
+        .iter()
+        .enumerate()
+        .map(|(row, station)| {
+            let smooth = station.before == station.after;
+            let after = surface.section(station.t, if row == last { Side::Before } else { Side::After });
+            let before = if smooth || row == 0 { after } else { surface.section(station.t, Side::Before) };
+            (before, after)
+        })
+        .collect();
+    if closed {
+        all[0].0 = all[last].0;
+        all[last].1 = all[0].1;
+    }
+    all
+}
+
+/// Runs of stations between hard joints.
+fn hard_runs(stations: &[Station], detail: &Detail) -> Vec<(usize, usize)> {
+    let last = stations.len() - 1;
+    let hard = |station: &Station| {
+        let sine = station.before.cross(station.after).length();
+        atan2(sine, station.before.dot(station.after)).to_degrees() > detail.crease_angle
+    };
+    let mut stops = vec![0];
+    stops.extend((1..last).filter(|index| hard(&stations[*index])));
+    stops.push(last);
+    stops.windows(2).map(|pair| (pair[0], pair[1])).collect()
+}
