@@ -1,1 +1,6 @@
-//! The language stage.
+//! The language: from text to a typed, resolved [`Spec`](spec::Spec), or every error found.
+
+pub mod diagnostic;
+pub mod source;
+pub mod spec;
+pub mod value;

@@ -1,0 +1,139 @@
+//! The stable codes of diagnostics.
+
+macro_rules! codes {
+    ($($(#[doc = $doc:literal])+ $name:ident = $text:literal;)+) => {
+        /// A stable code: it keeps its meaning from release to release. `kiln explain CODE` tells more.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Code {$(
+            $(#[doc = $doc])+
+            $name,
+        )+}
+
+        impl Code {
+            /// All codes, in order.
+            pub const ALL: &[Self] = &[$(Self::$name,)+];
+
+            /// The code as it is printed: `K0101`.
+            #[must_use]
+            pub const fn text(self) -> &'static str {
+                match self {$( Self::$name => $text, )+}
+            }
+
+            /// What the code means, in one line.
+            #[must_use]
+            pub fn title(self) -> &'static str {
+                match self {$( Self::$name => concat!($($doc),+).trim(), )+}
+            }
+
+            /// The code that is printed so; upper and lower case alike.
+            #[must_use]
+            pub fn parse(text: &str) -> Option<Self> {
+                Self::ALL.iter().copied().find(|code| code.text().eq_ignore_ascii_case(text))
+            }
+        }
+    };
+}
+
+codes! {
+    /// a file cannot be found
+    FileMissing = "K0001";
+    /// a file cannot be read
+    FileUnreadable = "K0002";
+    /// a path leaves the project
+    OutsideRoot = "K0003";
+    /// a document is not UTF-8 text
+    NotText = "K0004";
+    /// the text is not TOML 1.0
+    Syntax = "K0005";
+    /// arrays or tables are nested too deeply
+    TooDeep = "K0006";
+    /// a document is too large
+    TooLarge = "K0007";
+
+    /// a table has a key that it does not know
+    UnknownField = "K0101";
+    /// a table lacks a key that it needs
+    MissingField = "K0102";
+    /// a definition says no kind
+    NoKind = "K0103";
+    /// a definition says more than one kind
+    ManyKinds = "K0104";
+    /// two keys exclude each other
+    Conflict = "K0105";
+
+    /// a value is of the wrong type
+    WrongType = "K0201";
+    /// an array has too few or too many items
+    WrongLength = "K0202";
+    /// a number is out of its range
+    OutOfRange = "K0203";
+    /// a number is infinite, not a number, or beyond what can be computed with
+    NotFinite = "K0204";
+    /// a word is none of those that are known here
+    UnknownChoice = "K0205";
+    /// a text is not of the form that is asked for
+    Malformed = "K0206";
+    /// a name is not in kebab-case
+    BadName = "K0207";
+
+    /// a name is not defined
+    UnknownName = "K0301";
+    /// a name is defined, but as something else
+    WrongFamily = "K0302";
+    /// definitions refer to each other in a circle
+    Cycle = "K0303";
+    /// a name is defined twice
+    DuplicateName = "K0304";
+    /// a parameter is never used
+    UnusedParameter = "K0305";
+
+    /// an expression cannot be read
+    ExpressionSyntax = "K0401";
+    /// an expression names something that is not a parameter
+    UnknownVariable = "K0402";
+    /// an expression calls a function that does not exist
+    UnknownFunction = "K0403";
+    /// an operation is given a value of the wrong type
+    ExpressionType = "K0404";
+    /// a function is given too few or too many arguments
+    ArgumentCount = "K0405";
+    /// an expression has no finite value
+    ExpressionValue = "K0406";
+    /// an expression is too deep, too long or takes too many steps
+    ExpressionLimit = "K0407";
+    /// parameters are computed from each other in a circle
+    ParameterCycle = "K0408";
+    /// an override does not fit the parameter
+    BadOverride = "K0409";
+    /// a parameter has the name of something built in
+    ReservedName = "K0410";
+
+    /// documents include each other in a circle
+    IncludeCycle = "K0501";
+    /// an included document states another unit or axis
+    IncludeConflict = "K0502";
+    /// a variant is not defined
+    UnknownVariant = "K0503";
+    /// a limit is raised where it may only be lowered
+    LimitRaised = "K0504";
+
+    /// consecutive points are equal
+    RepeatedPoints = "K0601";
+    /// the points or angles determine no curve
+    Degenerate = "K0602";
+    /// the number of items does not fit the other fields
+    WrongCount = "K0603";
+    /// numbers do not increase
+    NotIncreasing = "K0604";
+
+    /// a face names a point that does not exist
+    FaceIndex = "K0701";
+    /// a face has fewer than three different corners
+    FaceCorners = "K0702";
+}
+
+impl std::fmt::Display for Code {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(self.text())
+    }
+}

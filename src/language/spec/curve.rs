@@ -1,0 +1,141 @@
+//! Curves: the kinds, and those that a few numbers determine.
+
+use glam::DVec3;
+
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::Span;
+use crate::language::spec::arc::Arc;
+use crate::language::spec::check::Check;
+use crate::language::spec::construct::{kinds, table};
+use crate::language::spec::path::Path;
+use crate::language::spec::point::{Point, Scale};
+use crate::language::spec::reader::Reader;
+use crate::language::spec::reference::CurveReference;
+use crate::language::spec::spanned::Sp;
+use crate::language::spec::spline::{Bezier, NaturalSpline, report_repeated};
+
+kinds! {
+    /// A curve of one kind.
+    "curve" Curve {
+        /// A straight line between two points.
+        Line(Line) = "line";
+        /// Straight lines from point to point.
+        Polyline(Polyline) = "polyline";
+        /// A full circle.
+        Circle(Circle) = "circle";
+        /// A full ellipse.
+        Ellipse(Ellipse) = "ellipse";
+        /// A part of a circle.
+        Arc(Arc) = "arc";
+        /// A screw line that climbs along +y.
+        Helix(Helix) = "helix";
+        /// A smooth curve through points.
+        NaturalSpline(NaturalSpline) = "natural-spline";
+        /// Bezier curves joined end to end.
+        Bezier(Bezier) = "bezier";
+        /// Lines, arcs and splines joined end to end.
+        Path(Path) = "path";
+        /// Another curve, run through from its end to its start.
+        Reverse(Reverse) = "reverse";
+        /// Another curve, scaled, rotated and moved.
+        Transform(Transform) = "transform";
+    }
+}
+
+table! {
+    /// A straight line between two points.
+    "line" Line {
+        /// Where it starts.
+        from: Sp<Point>;
+        /// Where it ends.
+        to: Sp<Point>;
+    }
+    checked check
+}
+
+table! {
+    /// Straight lines from point to point, with a corner at each.
+    "polyline" Polyline {
+        /// The corners, in order.
+        points: Vec<Sp<Point>> => Check::items(2);
+        /// Whether a last line leads back to the first point.
+        closed: Sp<bool> = false;
+    }
+    checked check
+}
+
+table! {
+    /// A full circle in the x, y plane. It starts at the right and turns counterclockwise.
+    "circle" Circle {
+        /// Radius, in the document's unit.
+        radius: Sp<f64> => Check::above(0.0);
+        /// The center.
+        center: Sp<Point> = Point::ORIGIN;
+    }
+}
+
+table! {
+    /// A full ellipse in the x, y plane, its axes along x and y. It starts at the right and turns counterclockwise.
+    "ellipse" Ellipse {
+        /// Half of the width and half of the height, in the document's unit.
+        radii: Sp<glam::DVec2> => Check::above(0.0);
+        /// The center.
+        center: Sp<Point> = Point::ORIGIN;
+    }
+}
+
+table! {
+    /// A screw line around the y axis: it starts at `[radius, 0, 0]` and climbs along +y, counterclockwise seen from above.
+    "helix" Helix {
+        /// Radius at the start, in the document's unit.
+        radius: Sp<f64> => Check::above(0.0);
+        /// Radius at the end; the same as at the start when it is not written.
+        end_radius: Option<Sp<f64>> => Check::above(0.0);
+        /// How far it climbs in one turn, in the document's unit; 0 winds a flat ring or spiral.
+        pitch: Sp<f64>;
+        /// How many turns it makes; part turns are allowed.
+        turns: Sp<f64> => Check::above(0.0).up_to(10_000.0);
+    }
+}
+
+table! {
+    /// Another curve, run through from its end to its start.
+    "reverse" Reverse {
+        /// The curve.
+        of: CurveReference;
+    }
+}
+
+table! {
+    /// Another curve, scaled, then rotated, then moved.
+    "transform" Transform {
+        /// The curve.
+        of: CurveReference;
+        /// Factor of size: a number, or one for each axis.
+        scale: Sp<Scale> = Scale(DVec3::ONE) => Check::nonzero();
+        /// Degrees about the x axis, then the y axis, then the z axis.
+        rotate: Sp<DVec3> = DVec3::ZERO;
+        /// How far it is moved, in the document's unit.
+        at: Sp<DVec3> = DVec3::ZERO;
+    }
+}
+
+impl Line {
+    fn check(&self, _: Span, reader: &mut Reader<'_>) -> bool {
+        if self.from.position != self.to.position {
+            return true;
+        }
+        let report =
+            Diagnostic::error(Code::Degenerate, "a line has two different ends, found the same point twice")
+                .at(self.to.span, "equal to `from`")
+                .also(self.from.span, "the start");
+        reader.report(report);
+        false
+    }
+}
+
+impl Polyline {
+    fn check(&self, _: Span, reader: &mut Reader<'_>) -> bool {
+        report_repeated(&self.points, self.closed.value, "points", reader)
+    }
+}

@@ -1,0 +1,115 @@
+//! The whole of a document, typed.
+
+use indexmap::IndexMap;
+
+use crate::language::source::Span;
+use crate::language::spec::assertion::Assertion;
+use crate::language::spec::construct::{choices, table};
+use crate::language::spec::curve::Curve;
+use crate::language::spec::import::Up;
+use crate::language::spec::limit::Limits;
+use crate::language::spec::material::Material;
+use crate::language::spec::node::Node;
+use crate::language::spec::reference::{CurveReference, ShapeReference};
+use crate::language::spec::shape::ShapeDefinition;
+use crate::language::spec::spanned::Sp;
+
+/// A document with all parameters put in: typed, checked, every name defined, free of cycles.
+///
+/// Lengths are as written, in the document's unit.
+#[derive(Clone, Debug)]
+pub struct Spec {
+    /// What one unit of length is.
+    pub unit: Unit,
+    /// The axis that points up in what is written.
+    pub up: Up,
+    /// How far meshes may lie from true surfaces, in the document's unit.
+    pub tolerance: Option<Sp<f64>>,
+    /// Facts about the asset, for its metadata.
+    pub asset: Asset,
+    /// `[curve.NAME]`, in the order of the text.
+    pub curves: IndexMap<String, Definition<Curve>>,
+    /// `[shape.NAME]`, in the order of the text.
+    pub shapes: IndexMap<String, Definition<ShapeDefinition>>,
+    /// `[material.NAME]`, in the order of the text.
+    pub materials: IndexMap<String, Definition<Material>>,
+    /// `[node.NAME]`, in the order of the text.
+    pub nodes: IndexMap<String, Definition<Node>>,
+    /// The shapes that a document without nodes shows: those that no other definition uses.
+    pub roots: Vec<String>,
+    /// `[assert]`.
+    pub asserts: Vec<Assertion>,
+    /// `[limits]`, laid under the defaults.
+    pub limits: Limits,
+}
+
+/// A definition, its name and its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Definition<T> {
+    /// The name, where it is first written.
+    pub name: Sp<String>,
+    /// The header.
+    pub span: Span,
+    /// What it says.
+    pub value: T,
+}
+
+choices! {
+    /// The unit of every length of a document.
+    Unit {
+        /// Metres.
+        Metre = "m";
+        /// Centimetres.
+        Centimetre = "cm";
+        /// Millimetres.
+        Millimetre = "mm";
+        /// Inches of 25.4 mm.
+        Inch = "in";
+        /// Feet of 304.8 mm.
+        Foot = "ft";
+    }
+}
+
+table! {
+    /// Facts about the asset, written into it.
+    "asset" Asset {
+        /// Its name; the name of the file when it is not written.
+        name: Option<Sp<String>>;
+        /// What it is.
+        description: Option<Sp<String>>;
+    }
+}
+
+impl Unit {
+    /// The unit in metres.
+    #[must_use]
+    pub const fn metres(self) -> f64 {
+        match self {
+            Self::Metre => 1.0,
+            Self::Centimetre => 0.01,
+            Self::Millimetre => 0.001,
+            Self::Inch => 0.0254,
+            Self::Foot => 0.3048,
+        }
+    }
+}
+
+impl Spec {
+    /// The curve that a reference names or writes; `None` only for a reference of another document.
+    #[must_use]
+    pub fn curve<'s>(&'s self, reference: &'s CurveReference) -> Option<&'s Curve> {
+        match reference {
+            CurveReference::Named(name) => self.curves.get(&name.value).map(|definition| &definition.value),
+            CurveReference::Inline(curve) => Some(&curve.value),
+        }
+    }
+
+    /// The shape that a reference names or writes; `None` only for a reference of another document.
+    #[must_use]
+    pub fn shape<'s>(&'s self, reference: &'s ShapeReference) -> Option<&'s ShapeDefinition> {
+        match reference {
+            ShapeReference::Named(name) => self.shapes.get(&name.value).map(|definition| &definition.value),
+            ShapeReference::Inline(shape) => Some(&shape.value),
+        }
+    }
+}

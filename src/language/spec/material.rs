@@ -1,0 +1,217 @@
+//! Materials: metallic-roughness, as glTF has it.
+
+use serde_json::{Value as Json, json};
+
+use crate::geometry::number::pow;
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::spec::check::Check;
+use crate::language::spec::construct::{choices, table};
+use crate::language::spec::import::FilePath;
+use crate::language::spec::point::read_numbers;
+use crate::language::spec::reader::{Read, Reader, backtick};
+use crate::language::spec::schema::{Schemas, numbers};
+use crate::language::spec::spanned::Sp;
+use crate::language::value::{Data, Value, show_number};
+
+table! {
+    /// How a surface looks.
+    "material" Material {
+        /// Its color: `"#rrggbb"` or `"#rrggbbaa"` as on screen (sRGB), or linear `[r, g, b]` or `[r, g, b, a]`.
+        color: Sp<Color> = Color::WHITE;
+        /// 0 is a plastic, a stone, a wood; 1 a metal.
+        metallic: Sp<f64> = 0.0 => Check::within(0.0, 1.0);
+        /// 0 is a mirror, 1 a chalk.
+        roughness: Sp<f64> = 1.0 => Check::within(0.0, 1.0);
+        /// An image that multiplies the color.
+        color_texture: Option<Sp<Texture>>;
+        /// An image whose green multiplies roughness and whose blue multiplies metallic.
+        metallic_roughness_texture: Option<Sp<Texture>>;
+        /// An image of small bumps, as normals in tangent space.
+        normal_texture: Option<Sp<Texture>>;
+        /// Strength of the normal texture.
+        normal_scale: Sp<f64> = 1.0;
+        /// An image whose red darkens what light hardly reaches.
+        occlusion_texture: Option<Sp<Texture>>;
+        /// Strength of the occlusion texture.
+        occlusion_strength: Sp<f64> = 1.0 => Check::within(0.0, 1.0);
+        /// Light that the surface gives off, as a color.
+        emissive: Option<Sp<Color>>;
+        /// An image that multiplies `emissive`.
+        emissive_texture: Option<Sp<Texture>>;
+        /// What the color's fourth number does.
+        alpha: Sp<Alpha> = Alpha::Opaque;
+        /// With `alpha = "mask"`: what is more transparent than this is left out.
+        alpha_cutoff: Option<Sp<f64>> => Check::within(0.0, 1.0);
+        /// Whether the back of the surface is seen too.
+        double_sided: Sp<bool> = false;
+    }
+    checked check
+}
+
+choices! {
+    /// What the alpha of a color does.
+    Alpha {
+        /// Nothing.
+        Opaque = "opaque";
+        /// It decides between all and nothing at `alpha-cutoff`.
+        Mask = "mask";
+        /// It blends with what lies behind.
+        Blend = "blend";
+    }
+}
+
+/// An image on a surface: a path, or a table with `file` in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texture {
+    /// The image, PNG or JPEG.
+    pub file: Sp<FilePath>,
+    /// What lies beyond its borders.
+    pub wrap: Sp<Wrap>,
+    /// How it looks when enlarged.
+    pub filter: Sp<Filter>,
+}
+
+table! {
+    /// An image on a surface.
+    "texture" TextureFields {
+        /// The image, PNG or JPEG; the path is relative to this document.
+        file: Sp<FilePath>;
+        /// What lies beyond its borders.
+        wrap: Sp<Wrap> = Wrap::Repeat;
+        /// How it looks when enlarged.
+        filter: Sp<Filter> = Filter::Linear;
+    }
+}
+
+choices! {
+    /// What lies beyond the borders of an image.
+    Wrap {
+        /// The image again.
+        Repeat = "repeat";
+        /// Its border, drawn out.
+        Clamp = "clamp";
+        /// The image, mirrored.
+        Mirror = "mirror";
+    }
+}
+
+choices! {
+    /// How an image looks when enlarged.
+    Filter {
+        /// Smooth.
+        Linear = "linear";
+        /// In squares.
+        Nearest = "nearest";
+    }
+}
+
+/// A color: linear red, green, blue and alpha, each from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Color {
+    /// Red, green, blue, alpha.
+    pub linear: [f64; 4],
+}
+
+impl Color {
+    /// White, opaque.
+    pub const WHITE: Self = Self { linear: [1.0; 4] };
+}
+
+impl Material {
+    fn check(&self, _: crate::language::source::Span, reader: &mut Reader<'_>) -> bool {
+        let Some(cutoff) = self.alpha_cutoff.filter(|_| self.alpha.value != Alpha::Mask) else { return true };
+        let report = Diagnostic::error(Code::Conflict, "`alpha-cutoff` needs `alpha = \"mask\"`")
+            .at(cutoff.span, format!("has no effect with \"{}\"", self.alpha.text()))
+            .also(self.alpha.span, "the alpha mode");
+        reader.report(report);
+        false
+    }
+}
+
+impl Read for Texture {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        match &value.data {
+            Data::String(_) => {
+                let file = Sp::<FilePath>::read(value, reader)?;
+                Some(Self { file, wrap: Wrap::Repeat.into(), filter: Filter::Linear.into() })
+            }
+            Data::Table(_) => {
+                let TextureFields { file, wrap, filter } = TextureFields::read(value, reader)?;
+                Some(Self { file, wrap, filter })
+            }
+            _ => {
+                reader.mismatch(value, "the path of an image, or a table with `file`");
+                None
+            }
+        }
+    }
+
+    fn schema(schemas: &mut Schemas) -> Json {
+        let table = TextureFields::schema(schemas);
+        json!({ "if": { "type": "object" }, "then": table, "else": { "type": "string" } })
+    }
+}
+
+impl Read for Color {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        if let Data::String(text) = &value.data {
+            let read = parse_hex(text);
+            if read.is_none() {
+                let message = format!("{} is no color: {}", reader.place(), backtick(text));
+                let report = Diagnostic::error(Code::Malformed, message)
+                    .at(value.span, "expected \"#rrggbb\" or \"#rrggbbaa\"");
+                reader.report(hint_hex(report, text, value.span));
+            }
+            return read;
+        }
+        let expected = "a color \"#rrggbb\", [r, g, b] or [r, g, b, a]";
+        let parts = read_numbers(value, 3, 4, expected, reader)?;
+        if let Some(index) = parts.iter().position(|part| !(0.0..=1.0).contains(part)) {
+            let found = show_number(parts[index]);
+            let message = format!("{} has parts from 0 to 1, found {found}", reader.place());
+            reader
+                .report(Diagnostic::error(Code::OutOfRange, message).at(value.span, "linear, not 0 to 255"));
+            return None;
+        }
+        Some(Self { linear: [parts[0], parts[1], parts[2], *parts.get(3).unwrap_or(&1.0)] })
+    }
+
+    fn schema(_: &mut Schemas) -> Json {
+        let mut schema = numbers(3, 4);
+        schema["pattern"] = json!("^(#([0-9a-fA-F]{6}|[0-9a-fA-F]{8})$|= )");
+        schema
+    }
+
+    fn written(&self) -> Option<Json> {
+        (*self == Self::WHITE).then(|| json!("#ffffff"))
+    }
+}
+
+fn parse_hex(text: &str) -> Option<Color> {
+    let digits = text.strip_prefix('#')?;
+    if !matches!(digits.len(), 6 | 8) || !digits.bytes().all(|byte| byte.is_ascii_hexdigit()) {
+        return None;
+    }
+    let part = |index: usize| digits.get(2 * index..2 * index + 2).map(|pair| u8::from_str_radix(pair, 16));
+    let byte = |index| part(index).and_then(Result::ok).map(|byte| f64::from(byte) / 255.0);
+    let alpha = byte(3).unwrap_or(1.0);
+    Some(Color { linear: [linear(byte(0)?), linear(byte(1)?), linear(byte(2)?), alpha] })
+}
+
+fn hint_hex(report: Diagnostic, text: &str, span: crate::language::source::Span) -> Diagnostic {
+    let digits = text.strip_prefix('#').unwrap_or(text);
+    if !digits.bytes().all(|byte| byte.is_ascii_hexdigit()) {
+        return report;
+    }
+    let full = match digits.len() {
+        3 => digits.chars().flat_map(|digit| [digit, digit]).collect(),
+        6 | 8 => digits.to_owned(),
+        _ => return report,
+    };
+    report.suggest(span, format!("\"#{full}\""), format!("write \"#{full}\""))
+}
+
+/// The sRGB transfer function (IEC 61966-2-1), from screen to light.
+fn linear(screen: f64) -> f64 {
+    if screen <= 0.040_45 { screen / 12.92 } else { pow((screen + 0.055) / 1.055, 2.4) }
+}

@@ -1,0 +1,122 @@
+//! Meshes written out: points and faces.
+
+use glam::{DVec2, DVec3};
+
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::Span;
+use crate::language::spec::check::Check;
+use crate::language::spec::construct::table;
+use crate::language::spec::reader::Reader;
+use crate::language::spec::spanned::Sp;
+
+table! {
+    /// Points and faces, written out. Faces turn counterclockwise seen from outside.
+    "mesh" Mesh {
+        /// The points, `[x, y, z]`, in the document's unit.
+        points: Vec<Sp<DVec3>> => Check::items(3);
+        /// The faces: for each, the indices of its corners in `points`, from 0.
+        faces: Vec<Sp<Vec<u32>>> => Check::items(1);
+        /// Texture coordinates, `[u, v]`. Without `face-uvs` there is one for each point.
+        uvs: Option<Sp<Vec<DVec2>>>;
+        /// For each face, the indices of its corners in `uvs`.
+        face_uvs: Option<Sp<Vec<Sp<Vec<u32>>>>>;
+        /// For each face the number of its smoothing group: edges between faces of one group look smooth. 0 is flat.
+        smoothing_groups: Option<Sp<Vec<u32>>>;
+    }
+    checked check
+}
+
+impl Mesh {
+    fn check(&self, _: Span, reader: &mut Reader<'_>) -> bool {
+        let mut good = true;
+        for (index, face) in self.faces.iter().enumerate() {
+            good &= self.check_face(index, face, reader);
+        }
+        let uvs = self.check_uvs(reader);
+        self.check_groups(reader) && uvs && good
+    }
+
+    fn check_face(&self, index: usize, face: &Sp<Vec<u32>>, reader: &mut Reader<'_>) -> bool {
+        let place = format!("`faces[{index}]`");
+        if let Some(fault) = corner_fault(face) {
+            reader.report(Diagnostic::error(Code::FaceCorners, format!("{place} {fault}")).at(face.span, ""));
+            return false;
+        }
+        check_indices(&place, face, self.points.len(), "points", reader)
+    }
+
+    fn check_uvs(&self, reader: &mut Reader<'_>) -> bool {
+        match (&self.uvs, &self.face_uvs) {
+            (Some(uvs), Some(faces)) => self.check_face_uvs(uvs.len(), faces, reader),
+            (Some(uvs), None) => {
+                self.same_count("uvs", uvs.len(), uvs.span, ("points", self.points.len()), reader)
+            }
+            (None, Some(faces)) => {
+                let report = Diagnostic::error(Code::MissingField, "`face-uvs` needs `uvs`");
+                reader.report(report.at(faces.span, "indices into `uvs`"));
+                false
+            }
+            (None, None) => true,
+        }
+    }
+
+    fn check_face_uvs(&self, uvs: usize, faces: &Sp<Vec<Sp<Vec<u32>>>>, reader: &mut Reader<'_>) -> bool {
+        if !self.same_count("face-uvs", faces.len(), faces.span, ("faces", self.faces.len()), reader) {
+            return false;
+        }
+        let mut good = true;
+        for (index, (corners, face)) in faces.iter().zip(&self.faces).enumerate() {
+            let place = format!("`face-uvs[{index}]`");
+            if corners.len() == face.len() {
+                good &= check_indices(&place, corners, uvs, "uvs", reader);
+                continue;
+            }
+            let message = format!("{place} has {} corners, its face has {}", corners.len(), face.len());
+            let report = Diagnostic::error(Code::WrongCount, message);
+            reader.report(report.at(corners.span, "").also(face.span, "the face"));
+            good = false;
+        }
+        good
+    }
+
+    fn check_groups(&self, reader: &mut Reader<'_>) -> bool {
+        let faces = ("faces", self.faces.len());
+        self.smoothing_groups.as_ref().is_none_or(|groups| {
+            self.same_count("smoothing-groups", groups.len(), groups.span, faces, reader)
+        })
+    }
+
+    fn same_count(
+        &self,
+        field: &str,
+        count: usize,
+        span: Span,
+        (of, expected): (&str, usize),
+        reader: &mut Reader<'_>,
+    ) -> bool {
+        if count == expected {
+            return true;
+        }
+        let message = format!("`{field}` needs one item for each of the {expected} {of}, found {count}");
+        reader.report(Diagnostic::error(Code::WrongCount, message).at(span, format!("expected {expected}")));
+        false
+    }
+}
+
+fn corner_fault(face: &[u32]) -> Option<String> {
+    if face.len() < 3 {
+        return Some(format!("needs at least 3 corners, found {}", face.len()));
+    }
+    let mut sorted = face.to_vec();
+    sorted.sort_unstable();
+    let twice = sorted.windows(2).find(|pair| pair[0] == pair[1])?;
+    Some(format!("names point {} twice", twice[0]))
+}
+
+fn check_indices(place: &str, face: &Sp<Vec<u32>>, count: usize, of: &str, reader: &mut Reader<'_>) -> bool {
+    let Some(index) = face.iter().find(|index| **index as usize >= count) else { return true };
+    let message = format!("{place} names {index}, but `{of}` has only {count} items");
+    let report = Diagnostic::error(Code::FaceIndex, message).at(face.span, "index out of range");
+    reader.report(report.note("indices count from 0"));
+    false
+}

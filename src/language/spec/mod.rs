@@ -1,0 +1,45 @@
+//! What a document can say: one file for each construct, read, checked and resolved.
+
+mod arc;
+mod assertion;
+mod check;
+mod combine;
+mod construct;
+mod curve;
+mod document;
+mod import;
+mod kind;
+mod limit;
+mod material;
+mod mesh;
+mod node;
+mod path;
+mod point;
+mod profile;
+mod reader;
+mod reference;
+mod scalar;
+mod schema;
+mod shape;
+mod spanned;
+mod spline;
+mod suggest;
+
+pub use arc::{Arc, CenterArc};
+pub use assertion::{Assertion, Demand, Expected};
+pub use combine::{Array, Copy, Group, Mirror, Plane};
+pub use curve::{Circle, Curve, Ellipse, Helix, Line, Polyline, Reverse, Transform};
+pub use document::{Asset, Definition, Spec, Unit};
+pub use import::{FilePath, Import, Up};
+pub use limit::Limits;
+pub use material::{Alpha, Color, Filter, Material, Texture, Wrap};
+pub use mesh::Mesh;
+pub use node::Node;
+pub use path::{ArcSegment, Joint, Path, Segment};
+pub use point::{Count, Point, Scale, Segments};
+pub use profile::{Extrude, Frame, Revolve, Sweep};
+pub use reference::{CurveReference, Family, MaterialName, NodeName, ShapeName, ShapeReference};
+pub use shape::{BoxShape, Cylinder, Shape, ShapeDefinition, ShapeOptions, Smoothing, Sphere, Uv};
+pub use spanned::Sp;
+pub use spline::{Bezier, NaturalSpline, Parameters};
+pub use suggest::closest;

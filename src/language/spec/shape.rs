@@ -1,0 +1,161 @@
+//! Shapes: what is common to all kinds, and the kinds.
+
+use glam::{DVec2, DVec3};
+use serde_json::Value as Json;
+
+use crate::language::spec::check::Check;
+use crate::language::spec::combine::{Array, Copy, Group, Mirror};
+use crate::language::spec::construct::{choices, kinds, table};
+use crate::language::spec::import::Import;
+use crate::language::spec::kind::{Kinds, take_kind};
+use crate::language::spec::mesh::Mesh;
+use crate::language::spec::point::{Scale, Segments};
+use crate::language::spec::profile::{Extrude, Revolve, Sweep};
+use crate::language::spec::reader::{Fields, Read, Reader};
+use crate::language::spec::reference::MaterialName;
+use crate::language::spec::schema::Schemas;
+use crate::language::spec::spanned::Sp;
+use crate::language::value::Value;
+
+/// A shape: its kind and the fields that all kinds have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeDefinition {
+    /// What is common to all kinds.
+    pub options: ShapeOptions,
+    /// What it is.
+    pub kind: Shape,
+}
+
+table! {
+    /// Fields of every shape, beside the table of its kind.
+    "shape" ShapeOptions {
+        /// How far the mesh may lie from the true surface, in the document's unit. When it is not written, the
+        /// document's `tolerance` holds, else the diagonal of the bounding box / 2000.
+        tolerance: Option<Sp<f64>> => Check::above(0.0);
+        /// A fixed grid instead of a tolerance: so many pieces in both directions, or `[u, v]`.
+        segments: Option<Sp<Segments>> => Check::at_least(1.0);
+        /// Where the surface looks smooth.
+        smoothing: Sp<Smoothing> = Smoothing::Auto;
+        /// Edges that bend by more than this many degrees look sharp.
+        crease_angle: Sp<f64> = 30.0 => Check::within(0.0, 180.0);
+        /// When texture coordinates are written.
+        uv: Sp<Uv> = Uv::Auto;
+        /// How often a texture repeats along u and v.
+        uv_scale: Sp<DVec2> = DVec2::ONE => Check::nonzero();
+        /// The name of its material.
+        material: Option<Sp<MaterialName>>;
+        /// Factor of size: a number, or one for each axis. Applied before `rotate` and `at`.
+        scale: Sp<Scale> = Scale(DVec3::ONE) => Check::nonzero();
+        /// Degrees about the x axis, then the y axis, then the z axis.
+        rotate: Sp<DVec3> = DVec3::ZERO;
+        /// How far it is moved, in the document's unit.
+        at: Sp<DVec3> = DVec3::ZERO;
+    }
+}
+
+choices! {
+    /// Where the surface of a shape looks smooth.
+    Smoothing {
+        /// Smooth but for corners of the profile, edges beyond `crease-angle` and borders of smoothing groups.
+        Auto = "auto";
+        /// Every facet is flat.
+        Flat = "flat";
+        /// Smooth everywhere.
+        Smooth = "smooth";
+    }
+}
+
+choices! {
+    /// When texture coordinates are written.
+    Uv {
+        /// When the material has a texture.
+        Auto = "auto";
+        /// Always.
+        Always = "always";
+        /// Never.
+        None = "none";
+    }
+}
+
+kinds! {
+    /// A shape of one kind.
+    "shape" Shape {
+        /// A box with flat sides.
+        Box(BoxShape) = "box";
+        /// A ball.
+        Sphere(Sphere) = "sphere";
+        /// A cylinder that stands along the y axis.
+        Cylinder(Cylinder) = "cylinder";
+        /// A profile turned about the y axis.
+        Revolve(Revolve) = "revolve";
+        /// A flat profile drawn out along the z axis.
+        Extrude(Extrude) = "extrude";
+        /// A profile drawn along a curve.
+        Sweep(Sweep) = "sweep";
+        /// Points and faces, written out.
+        Mesh(Mesh) = "mesh";
+        /// A model from a file.
+        Import(Import) = "import";
+        /// Another shape again.
+        Copy(Copy) = "copy";
+        /// Another shape and its mirror image.
+        Mirror(Mirror) = "mirror";
+        /// Another shape many times.
+        Array(Array) = "array";
+        /// Several shapes as one mesh; each keeps its material.
+        Group(Group) = "group";
+    }
+}
+
+table! {
+    /// A box with flat sides.
+    "box" BoxShape {
+        /// Width along x, height along y and depth along z, in the document's unit.
+        size: Sp<DVec3> => Check::above(0.0);
+        /// The middle.
+        center: Sp<DVec3> = DVec3::ZERO;
+    }
+}
+
+table! {
+    /// A ball.
+    "sphere" Sphere {
+        /// Radius, in the document's unit.
+        radius: Sp<f64> => Check::above(0.0);
+        /// The middle.
+        center: Sp<DVec3> = DVec3::ZERO;
+    }
+}
+
+table! {
+    /// A cylinder that stands along the y axis, closed at both ends.
+    "cylinder" Cylinder {
+        /// Radius, in the document's unit.
+        radius: Sp<f64> => Check::above(0.0);
+        /// Height along y, in the document's unit.
+        height: Sp<f64> => Check::above(0.0);
+        /// The middle.
+        center: Sp<DVec3> = DVec3::ZERO;
+    }
+}
+
+impl Read for ShapeDefinition {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        let mut fields = Fields::open(value, "shape", reader)?;
+        let options = ShapeOptions::take(&mut fields, reader);
+        let kind = take_kind::<Shape>(&mut fields, reader);
+        let closed = fields.close(reader);
+        match (options, kind, closed) {
+            (Some(options), Some(kind), true) => Some(Self { options, kind }),
+            _ => None,
+        }
+    }
+
+    fn schema(schemas: &mut Schemas) -> Json {
+        let doc = "A shape: one kind, and beside it the fields that every shape has.";
+        schemas.object("shape", doc, |object, schemas| {
+            ShapeOptions::describe(object, schemas);
+            Shape::describe_kinds(object, schemas);
+        })
+    }
+}

@@ -1,0 +1,200 @@
+//! Curves through and near points: natural splines and Bezier curves.
+
+use serde_json::{Value as Json, json};
+
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::Span;
+use crate::language::spec::check::Check;
+use crate::language::spec::construct::table;
+use crate::language::spec::kind::choice;
+use crate::language::spec::point::Point;
+use crate::language::spec::reader::{Read, Reader};
+use crate::language::spec::schema::Schemas;
+use crate::language::spec::spanned::Sp;
+use crate::language::value::{Data, Value, show_number};
+
+table! {
+    /// A smooth curve through points: a cubic spline whose curvature is zero at both ends, or periodic when closed.
+    "natural-spline" NaturalSpline {
+        /// The points that it goes through, in order.
+        points: Vec<Sp<Point>> => Check::items(2);
+        /// Whether it runs back to the first point, smooth there too.
+        closed: Sp<bool> = false;
+        /// How the parameter is spread over the points: `"uniform"`, `"chordal"` (by distance), `"centripetal"`
+        /// (by the root of the distance: tighter at sharp turns), or increasing numbers, one for each point
+        /// (one more when closed).
+        parameters: Sp<Parameters> = Parameters::Chordal;
+    }
+    checked check
+}
+
+/// How the parameter of a spline is spread over its points.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Parameters {
+    /// The same step between all points.
+    Uniform,
+    /// In proportion to the distance between points.
+    Chordal,
+    /// In proportion to the square root of the distance.
+    Centripetal,
+    /// As written; strictly increasing, one for each point, one more when closed.
+    Given(Vec<Sp<f64>>),
+}
+
+table! {
+    /// Bezier curves joined end to end: each begins at the last point of the one before.
+    "bezier" Bezier {
+        /// End points and the control points between them, in one list: `degree` times the number of pieces, plus 1.
+        points: Sp<Vec<Sp<Point>>> => Check::items(2);
+        /// Degree of each piece: 3 is cubic.
+        degree: Sp<u32> = 3 => Check::within(1.0, 25.0);
+    }
+    checked check
+}
+
+impl Read for Parameters {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        if matches!(value.data, Data::Array(_)) {
+            return Vec::read(value, reader).map(Self::Given);
+        }
+        match choice(value, &["uniform", "chordal", "centripetal"], reader)? {
+            "uniform" => Some(Self::Uniform),
+            "centripetal" => Some(Self::Centripetal),
+            _ => Some(Self::Chordal),
+        }
+    }
+
+    fn schema(schemas: &mut Schemas) -> Json {
+        let numbers = Vec::<f64>::schema(schemas);
+        let words =
+            json!({ "anyOf": [{ "enum": ["uniform", "chordal", "centripetal"] }, { "pattern": "^= " }] });
+        json!({ "if": { "type": "string" }, "then": words, "else": numbers })
+    }
+
+    fn written(&self) -> Option<Json> {
+        match self {
+            Self::Uniform => Some(json!("uniform")),
+            Self::Chordal => Some(json!("chordal")),
+            Self::Centripetal => Some(json!("centripetal")),
+            Self::Given(numbers) => numbers.written(),
+        }
+    }
+}
+
+impl NaturalSpline {
+    fn check(&self, _: Span, reader: &mut Reader<'_>) -> bool {
+        let distinct = report_repeated(&self.points, self.closed.value, "points", reader);
+        self.check_closed(reader) && self.check_parameters(reader) && distinct
+    }
+
+    fn check_closed(&self, reader: &mut Reader<'_>) -> bool {
+        if !self.closed.value || self.points.len() > 2 {
+            return true;
+        }
+        let message = format!("a closed spline needs at least 3 points, found {}", self.points.len());
+        reader.report(Diagnostic::error(Code::WrongLength, message).at(self.closed.span, "closed"));
+        false
+    }
+
+    fn check_parameters(&self, reader: &mut Reader<'_>) -> bool {
+        let Parameters::Given(numbers) = &self.parameters.value else { return true };
+        let expected = self.points.len() + usize::from(self.closed.value);
+        if numbers.len() != expected {
+            let message = format!(
+                "a spline through {} points{} needs {expected} parameters, found {}",
+                self.points.len(),
+                if self.closed.value { " that is closed" } else { "" },
+                numbers.len()
+            );
+            reader
+                .report(Diagnostic::error(Code::WrongCount, message).at(self.parameters.span, "wrong count"));
+            return false;
+        }
+        check_increasing(numbers, reader)
+    }
+}
+
+fn check_increasing(numbers: &[Sp<f64>], reader: &mut Reader<'_>) -> bool {
+    let Some(index) = numbers.windows(2).position(|pair| pair[1].value <= pair[0].value) else {
+        return true;
+    };
+    let (before, after) = (&numbers[index], &numbers[index + 1]);
+    let message = format!(
+        "`parameters` must increase, found {} after {} at index {}",
+        show_number(after.value),
+        show_number(before.value),
+        index + 1
+    );
+    let report = Diagnostic::error(Code::NotIncreasing, message)
+        .at(after.span, "not greater than the one before")
+        .also(before.span, "the one before");
+    reader.report(report);
+    false
+}
+
+impl Bezier {
+    fn check(&self, _: Span, reader: &mut Reader<'_>) -> bool {
+        let (count, degree) = (self.points.len(), self.degree.value as usize);
+        if count % degree != 1 % degree {
+            let below = count.saturating_sub(1) / degree * degree + 1;
+            let fits =
+                if below > 1 { format!("{below} or {}", below + degree) } else { (degree + 1).to_string() };
+            let message = format!("a Bezier curve of degree {degree} cannot have {count} points");
+            let report = Diagnostic::error(Code::WrongCount, message)
+                .at(self.points.span, format!("expected {fits}"))
+                .note("each piece adds as many points as its degree to the point where it begins");
+            reader.report(report);
+            return false;
+        }
+        self.check_pieces(degree, reader)
+    }
+
+    fn check_pieces(&self, degree: usize, reader: &mut Reader<'_>) -> bool {
+        let pieces =
+            (0..self.points.len() - 1).step_by(degree).map(|at| (at, &self.points[at..=at + degree]));
+        let mut good = true;
+        for (at, piece) in pieces {
+            if piece.iter().all(|point| point.position == piece[0].position) {
+                let message = format!("points {at} to {} of this Bezier curve are all equal", at + degree);
+                reader.report(Diagnostic::error(Code::RepeatedPoints, message).at(piece[1].span, "no curve"));
+                good = false;
+            }
+        }
+        good
+    }
+}
+
+/// Whether all consecutive points differ, last and first too when `closed`; reports those that do not.
+pub(crate) fn report_repeated(
+    points: &[Sp<Point>],
+    closed: bool,
+    field: &str,
+    reader: &mut Reader<'_>,
+) -> bool {
+    let count = points.len();
+    let steps = if closed && count > 1 { count } else { count.saturating_sub(1) };
+    let mut good = true;
+    for index in 0..steps {
+        let next = (index + 1) % count;
+        if points[index].position == points[next].position {
+            reader.report(repeated(points, index, next, field));
+            good = false;
+        }
+    }
+    good
+}
+
+fn repeated(points: &[Sp<Point>], index: usize, next: usize, field: &str) -> Diagnostic {
+    let message = format!("`{field}[{index}]` and `{field}[{next}]` are the same point");
+    let report = Diagnostic::error(Code::RepeatedPoints, message);
+    if next == 0 {
+        return report
+            .at(points[index].span, "equal to the first point")
+            .also(points[0].span, "the first point")
+            .help("leave the last point out: a closed curve leads back by itself");
+    }
+    report
+        .at(points[next].span, "equal to the point before")
+        .also(points[index].span, "the point before")
+        .help("leave one of them out")
+}
