@@ -1,1 +1,126 @@
-//! The build stage.
+//! From what a document says to the exact model.
+//!
+//! Promise: every definition that the asset needs is built once, however often it is used; all faults are
+//! found in one run, each with its place; what is built satisfies the preconditions of the geometry kernels
+//! (profiles flat, closed where they must be, on their side of the axis, free of crossings).
+
+mod curve;
+mod import;
+mod material;
+mod node;
+mod profile;
+mod shape;
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use indexmap::IndexMap;
+
+use crate::language::diagnostic::{Diagnostic, Diagnostics};
+use crate::language::source::{Files, Span};
+use crate::language::spec::{Spec, Up};
+use crate::model::{Frame, ImageHandle, Limits, MaterialHandle, Model, ShapeHandle};
+
+/// A model, and where its parts are written.
+#[derive(Clone, Debug)]
+pub struct Built {
+    /// The model.
+    pub model: Model,
+    /// Where each shape is defined, by handle.
+    pub places: Vec<Span>,
+    /// What a person should know though nothing is wrong.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Builds the model of a document; `name` is the asset's unless the document states one.
+///
+/// # Errors
+/// All faults of the document's geometry and of the files it names.
+pub fn model(spec: &Spec, name: &str, files: &dyn Files) -> Result<Built, Diagnostics> {
+    let mut builder = Builder::new(spec, name, files);
+    builder.build();
+    let Builder { model, places, reports, .. } = builder;
+    let reports = Diagnostics::new(reports);
+    if reports.has_errors() {
+        return Err(reports);
+    }
+    Ok(Built { model, places, warnings: reports.into_vec() })
+}
+
+/// The model in the making. A definition that failed is `None` in its map and is not tried again.
+struct Builder<'a> {
+    spec: &'a Spec,
+    files: &'a dyn Files,
+    model: Model,
+    places: Vec<Span>,
+    reports: Vec<Diagnostic>,
+    shapes: IndexMap<String, Option<ShapeHandle>>,
+    materials: IndexMap<String, Option<MaterialHandle>>,
+    images: IndexMap<String, Option<ImageHandle>>,
+    curves: IndexMap<String, Option<crate::geometry::curve::AnyCurve>>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(spec: &'a Spec, name: &str, files: &'a dyn Files) -> Self {
+        let name = spec.asset.name.as_ref().map_or_else(|| name.to_owned(), |name| name.value.clone());
+        let model = Model {
+            name,
+            frame: Frame { unit: spec.unit.metres(), z_up: spec.up == Up::Z },
+            tolerance: spec.tolerance.map(|tolerance| tolerance.value),
+            shapes: Vec::new(),
+            materials: Vec::new(),
+            images: Vec::new(),
+            nodes: Vec::new(),
+            limits: Limits {
+                triangles: spec.limits.triangles,
+                vertices: spec.limits.vertices,
+                memory: spec.limits.memory,
+            },
+        };
+        Self {
+            spec,
+            files,
+            model,
+            places: Vec::new(),
+            reports: Vec::new(),
+            shapes: IndexMap::new(),
+            materials: IndexMap::new(),
+            images: IndexMap::new(),
+            curves: IndexMap::new(),
+        }
+    }
+
+    fn build(&mut self) {
+        let spec = self.spec;
+        // Every definition is built, used or not, so that no fault hides.
+        for name in spec.materials.keys() {
+            self.material(name);
+        }
+        for (name, definition) in &spec.curves {
+            self.named_curve(name, definition.name.span);
+        }
+        for name in spec.shapes.keys() {
+            self.named_shape(name);
+        }
+        self.nodes();
+    }
+
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.reports.push(diagnostic);
+    }
+}
+
+/// The map that scales, then turns about x, y and z, then moves.
+fn placement(scale: DVec3, rotate: DVec3, at: DVec3) -> DAffine3 {
+    DAffine3 { matrix3: DMat3::from_quat(rotation(rotate)) * DMat3::from_diagonal(scale), translation: at }
+}
+
+/// The rotation by degrees about x, then y, then z (fixed axes).
+fn rotation(degrees: DVec3) -> DQuat {
+    if degrees == DVec3::ZERO {
+        return DQuat::IDENTITY;
+    }
+    let about = |axis: DVec3, angle: f64| {
+        let (sin, cos) = crate::geometry::number::sin_cos_degrees(angle / 2.0);
+        DQuat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos)
+    };
+    about(DVec3::Z, degrees.z) * about(DVec3::Y, degrees.y) * about(DVec3::X, degrees.x)
+}

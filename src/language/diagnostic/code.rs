@@ -130,6 +130,48 @@ codes! {
     FaceIndex = "K0701";
     /// a face has fewer than three different corners
     FaceCorners = "K0702";
+
+    /// a profile reaches across the axis it is turned about
+    AcrossAxis = "K0801";
+    /// a curve is open where a closed one is needed
+    OpenProfile = "K0802";
+    /// an outline crosses itself
+    SelfCrossing = "K0803";
+    /// an outline encloses no area
+    NoArea = "K0804";
+    /// a joint that is declared smooth is not
+    BrokenJoint = "K0805";
+    /// a path turns back on itself
+    Reversal = "K0806";
+    /// a profile is not flat in the x, y plane
+    NotFlat = "K0807";
+    /// a hole does not lie inside its outline
+    BadHole = "K0808";
+    /// a section is too wide for the bends of its path
+    TightBend = "K0809";
+    /// polygons do not make a mesh
+    BadMesh = "K0810";
+
+    /// a file cannot be imported
+    ImportFailed = "K0851";
+    /// parts of an imported file are left out
+    ImportNote = "K0852";
+    /// the format of a file is not supported
+    UnsupportedFormat = "K0853";
+    /// an image cannot be used
+    BadImage = "K0854";
+    /// an imported file has no group or material of that name
+    UnknownPart = "K0855";
+
+    /// a limit would be passed
+    LimitPassed = "K0901";
+    /// the result has nothing to show
+    NothingToShow = "K0902";
+
+    /// an assertion does not hold
+    AssertionFailed = "K0951";
+    /// the report has no such path
+    UnknownFact = "K0952";
 }
 
 impl std::fmt::Display for Code {

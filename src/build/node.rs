@@ -1,0 +1,60 @@
+//! Nodes, or where a document has none, one for each shape that stands by itself.
+
+use glam::{DQuat, DVec3};
+
+use super::{Builder, rotation};
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::Span;
+use crate::model::Node;
+
+impl Builder<'_> {
+    pub(super) fn nodes(&mut self) {
+        if self.spec.nodes.is_empty() {
+            self.root_nodes();
+        } else {
+            self.written_nodes();
+        }
+        let shows = self.model.nodes.iter().any(|node| node.shape.is_some());
+        if !shows && self.reports.iter().all(|report| report.severity != crate::language::diagnostic::Severity::Error) {
+            let report = Diagnostic::error(Code::NothingToShow, "this document shows no shape")
+                .at(Span::NONE, "")
+                .help("define a shape, as in `[shape.ball.sphere]` with `radius = 0.5`");
+            self.report(report);
+        }
+    }
+
+    fn root_nodes(&mut self) {
+        let spec = self.spec;
+        for name in &spec.roots {
+            let shape = self.named_shape(name);
+            self.model.nodes.push(Node {
+                name: name.clone(),
+                shape,
+                material: None,
+                parent: None,
+                translation: DVec3::ZERO,
+                rotation: DQuat::IDENTITY,
+                scale: DVec3::ONE,
+            });
+        }
+    }
+
+    fn written_nodes(&mut self) {
+        let spec = self.spec;
+        for (name, definition) in &spec.nodes {
+            let node = &definition.value;
+            let shape = node.shape.as_ref().and_then(|shape| self.named_shape(&shape.value.0));
+            let material = node.material.as_ref().and_then(|material| self.material(&material.value.0));
+            let parent = node.parent.as_ref().and_then(|parent| spec.nodes.get_index_of(&parent.value.0));
+            self.model.nodes.push(Node {
+                name: name.clone(),
+                shape,
+                material,
+                parent,
+                translation: node.at.value,
+                rotation: rotation(node.rotate.value),
+                scale: node.scale.value.0,
+            });
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! What profiles must satisfy before they are turned, pushed or carried.
+
+use glam::DVec2;
+
+use super::Builder;
+use crate::geometry::curve::{AnyCurve, Curve as _};
+use crate::geometry::number::Bounds;
+use crate::geometry::tessellate::{Crossing, Density, Station, discretize, first_crossing};
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::Span;
+use crate::language::spec::CurveReference;
+
+/// A profile and points along it, close enough to judge it by.
+pub(super) struct Profile {
+    pub(super) curve: AnyCurve,
+    pub(super) stations: Vec<Station>,
+    pub(super) size: f64,
+    pub(super) span: Span,
+}
+
+/// Most chords with which a profile is judged.
+const CHORDS: u64 = 1 << 20;
+
+impl Builder<'_> {
+    /// A flat profile that does not cross itself.
+    pub(super) fn profile(&mut self, reference: &CurveReference, what: &str) -> Option<Profile> {
+        let curve = self.curve_of(reference)?;
+        let span = reference.span();
+        let rough: Vec<_> = discretize(&curve, Density::Count(64), CHORDS).ok()?;
+        let bounds = Bounds::of_points(rough.iter().map(|station| station.point));
+        let size = bounds.diagonal();
+        let Ok(stations) = discretize(&curve, Density::Tolerance(size / 4000.0), CHORDS) else {
+            return self.refuse(Code::LimitPassed, &format!("the {what} is too intricate"), span, "too many bends");
+        };
+        if let Some(station) = stations.iter().find(|station| station.point.z.abs() > 1e-9 * size) {
+            let message = format!("the {what} is not flat: it reaches z = {}", show(station.point.z));
+            return self.refuse(Code::NotFlat, &message, span, "must lie in the x, y plane");
+        }
+        let profile = Profile { curve, stations, size, span };
+        match profile.crossing() {
+            Some(crossing) => self.crossed(&profile, what, &crossing),
+            None => Some(profile),
+        }
+    }
+
+    /// A profile that is closed.
+    pub(super) fn closed_profile(&mut self, reference: &CurveReference, what: &str) -> Option<Profile> {
+        let profile = self.profile(reference, what)?;
+        if profile.curve.is_closed() {
+            return Some(profile);
+        }
+        let (start, end) = (profile.stations[0].point, profile.stations[profile.stations.len() - 1].point);
+        let message = format!("the {what} must be closed; its ends are {} apart", show(start.distance(end)));
+        let report = Diagnostic::error(Code::OpenProfile, message)
+            .at(profile.span, format!("from {} to {}", place(start.truncate()), place(end.truncate())))
+            .help("write `closed = true`, or end the curve where it starts");
+        self.report(report);
+        None
+    }
+
+    /// A profile on one side of the y axis.
+    pub(super) fn axial_profile(&mut self, reference: &CurveReference) -> Option<Profile> {
+        let profile = self.profile(reference, "profile")?;
+        let least = profile.stations.iter().min_by(|a, b| a.point.x.total_cmp(&b.point.x))?;
+        if least.point.x < -1e-9 * profile.size {
+            let message = format!("the profile crosses the axis: x is {} at y = {}", show(least.point.x), show(least.point.y));
+            let report = Diagnostic::error(Code::AcrossAxis, message)
+                .at(profile.span, "x is the radius and must not be negative")
+                .help("move the points to x >= 0; a profile that ends on the axis ends at x = 0");
+            self.report(report);
+            return None;
+        }
+        if profile.stations.iter().all(|station| station.point.x <= 1e-9 * profile.size) {
+            return self.refuse(Code::NoArea, "the profile lies on the axis", profile.span, "sweeps no surface");
+        }
+        Some(profile)
+    }
+
+    fn crossed(&mut self, profile: &Profile, what: &str, crossing: &Crossing) -> Option<Profile> {
+        let t = |segment: usize| profile.stations[segment].t;
+        let message = format!("the {what} crosses itself near {}", place(crossing.point));
+        let report = Diagnostic::error(Code::SelfCrossing, message)
+            .at(profile.span, "crosses itself")
+            .note(format!("at parameters {} and {}", show(t(crossing.first)), show(t(crossing.second))));
+        self.report(report);
+        None
+    }
+
+    fn refuse<T>(&mut self, code: Code, message: &str, span: Span, label: &str) -> Option<T> {
+        self.report(Diagnostic::error(code, message).at(span, label));
+        None
+    }
+}
+
+impl Profile {
+    fn crossing(&self) -> Option<Crossing> {
+        let closed = self.curve.is_closed();
+        let used = self.stations.len() - usize::from(closed);
+        let points: Vec<DVec2> = self.stations[..used].iter().map(|station| station.point.truncate()).collect();
+        first_crossing(&points, closed)
+    }
+}
+
+/// A number for a message, to six digits.
+pub(super) fn show(number: f64) -> String {
+    let rounded: f64 = format!("{number:.5e}").parse().unwrap_or(number);
+    rounded.to_string()
+}
+
+fn place(point: DVec2) -> String {
+    format!("[{}, {}]", show(point.x), show(point.y))
+}

@@ -1,0 +1,244 @@
+//! Shapes of a document into recipes.
+
+use glam::{DAffine3, DMat3, DVec2, DVec3};
+
+use super::{Builder, placement};
+use crate::geometry::curve::{AnyCurve, Curve as _, EllipseArc, Polyline, Side};
+use crate::geometry::mesh::PolygonMesh;
+use crate::geometry::tessellate::{Extrusion, Revolution, Sweep};
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::Span;
+use crate::language::spec::{self, Count, Shape as Kind, ShapeDefinition, ShapeReference};
+use crate::model::{Density, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode};
+
+impl Builder<'_> {
+    /// The shape of a name, built at its first use.
+    pub(super) fn named_shape(&mut self, name: &str) -> Option<ShapeHandle> {
+        if let Some(known) = self.shapes.get(name) {
+            return *known;
+        }
+        let definition = self.spec.shapes.get(name)?;
+        let handle = self.shape(name, &definition.value, definition.span);
+        self.shapes.insert(name.to_owned(), handle);
+        handle
+    }
+
+    fn shape_of(&mut self, user: &str, index: usize, reference: &ShapeReference) -> Option<ShapeHandle> {
+        match reference {
+            ShapeReference::Named(name) => self.named_shape(&name.value),
+            ShapeReference::Inline(shape) => {
+                self.shape(&format!("{user}-{}", index + 1), &shape.value, shape.span)
+            }
+        }
+    }
+
+    fn shape(&mut self, name: &str, definition: &ShapeDefinition, span: Span) -> Option<ShapeHandle> {
+        let options = self.options(&definition.options);
+        let (recipe, center) = self.recipe(name, &definition.kind, span)?;
+        let mut options = options?;
+        options.placement = options.placement * DAffine3::from_translation(center);
+        self.model.shapes.push(Shape { name: name.to_owned(), recipe, options });
+        self.places.push(span);
+        Some(ShapeHandle(self.model.shapes.len() as u32 - 1))
+    }
+
+    fn options(&mut self, written: &spec::ShapeOptions) -> Option<ShapeOptions> {
+        let material = match &written.material {
+            Some(name) => Some(self.material(&name.value.0)?),
+            None => None,
+        };
+        Some(ShapeOptions {
+            tolerance: written.tolerance.map(|tolerance| tolerance.value),
+            density: written.segments.map(|grid| Density { u: grid.u, v: grid.v }),
+            smoothing: match written.smoothing.value {
+                spec::Smoothing::Auto => Smoothing::Auto,
+                spec::Smoothing::Flat => Smoothing::Flat,
+                spec::Smoothing::Smooth => Smoothing::Smooth,
+            },
+            crease_angle: written.crease_angle.value,
+            uv: match written.uv.value {
+                spec::Uv::Auto => UvMode::Auto,
+                spec::Uv::Always => UvMode::Always,
+                spec::Uv::None => UvMode::None,
+            },
+            uv_scale: written.uv_scale.value,
+            material,
+            placement: placement(written.scale.0, written.rotate.value, written.at.value),
+        })
+    }
+
+    /// The recipe of a kind and where its origin is moved.
+    fn recipe(&mut self, name: &str, kind: &Kind, span: Span) -> Option<(Recipe, DVec3)> {
+        let here = |recipe: Recipe| (recipe, DVec3::ZERO);
+        match kind {
+            Kind::Box(cuboid) => {
+                Some(here(Recipe::Cuboid { size: cuboid.size.value, center: cuboid.center.value }))
+            }
+            Kind::Sphere(sphere) => {
+                let arc = EllipseArc::circle(DVec3::ZERO, sphere.radius.value, -90.0, 90.0);
+                Some((turned(AnyCurve::Ellipse(arc)), sphere.center.value))
+            }
+            Kind::Cylinder(cylinder) => {
+                let (radius, half) = (cylinder.radius.value, cylinder.height.value / 2.0);
+                let corners = [(0.0, -half), (radius, -half), (radius, half), (0.0, half)];
+                let corners = corners.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
+                let profile = Polyline::new(corners, false).map(AnyCurve::Polyline)?;
+                Some((turned(profile), cylinder.center.value))
+            }
+            Kind::Revolve(revolve) => {
+                let profile = self.axial_profile(&revolve.profile)?;
+                Some(here(Recipe::Revolution(Revolution {
+                    profile: profile.curve,
+                    start: revolve.start.value,
+                    angle: revolve.angle.value,
+                    caps: revolve.caps.value,
+                })))
+            }
+            Kind::Extrude(extrude) => self.extrusion(extrude).map(here),
+            Kind::Sweep(sweep) => self.sweep(sweep).map(here),
+            Kind::Mesh(mesh) => self.mesh(mesh, span).map(here),
+            Kind::Import(import) => self.import(import, span).map(here),
+            Kind::Copy(copy) => {
+                let of = self.shape_of(name, 0, &copy.of)?;
+                Some(here(Recipe::Assembly(vec![(of, DAffine3::IDENTITY)])))
+            }
+            Kind::Mirror(mirror) => {
+                let of = self.shape_of(name, 0, &mirror.of)?;
+                let image = (of, reflection(mirror.plane.normal, mirror.plane.point));
+                let parts =
+                    if mirror.keep.value { vec![(of, DAffine3::IDENTITY), image] } else { vec![image] };
+                Some(here(Recipe::Assembly(parts)))
+            }
+            Kind::Array(array) => {
+                let of = self.shape_of(name, 0, &array.of)?;
+                Some(here(Recipe::Assembly(copies(array).into_iter().map(|map| (of, map)).collect())))
+            }
+            Kind::Group(group) => {
+                let parts: Vec<_> = (group.of.iter().enumerate())
+                    .map(|(index, part)| self.shape_of(name, index, part))
+                    .collect();
+                let parts: Option<Vec<_>> = parts.into_iter().collect();
+                let parts = parts?.into_iter().map(|part| (part, DAffine3::IDENTITY)).collect();
+                Some(here(Recipe::Assembly(parts)))
+            }
+        }
+    }
+
+    fn extrusion(&mut self, extrude: &spec::Extrude) -> Option<Recipe> {
+        let outline = self.closed_profile(&extrude.profile, "outline");
+        let holes: Vec<_> =
+            extrude.holes.iter().map(|hole| self.closed_profile(hole, "hole")).collect();
+        let holes: Option<Vec<_>> = holes.into_iter().collect();
+        let (outline, holes) = (outline?, holes?);
+        let height = extrude.height.value;
+        let mut outlines = vec![outline.curve];
+        outlines.extend(holes.into_iter().map(|hole| hole.curve));
+        Some(Recipe::Extrusion(Extrusion {
+            outlines,
+            bottom: if extrude.centered.value { -height / 2.0 } else { 0.0 },
+            height,
+            caps: extrude.caps.value,
+        }))
+    }
+
+    fn sweep(&mut self, sweep: &spec::Sweep) -> Option<Recipe> {
+        let profile = self.profile(&sweep.profile, "profile");
+        let path = self.curve_of(&sweep.path);
+        let (profile, path) = (profile?, path?);
+        self.check_path(&path, sweep.path.span())?;
+        Some(Recipe::Sweep(Sweep {
+            profile: profile.curve,
+            path,
+            twist: sweep.twist.value,
+            caps: sweep.caps.value,
+        }))
+    }
+
+    /// A path must not turn back: there the section would have no plane to stand in.
+    fn check_path(&mut self, path: &AnyCurve, span: Span) -> Option<()> {
+        const STEEPEST: f64 = 170.0;
+        let domain = path.domain();
+        let mut corners: Vec<(f64, f64)> = path.joints().into_iter().map(|t| (t, t)).collect();
+        if path.is_closed() {
+            corners.push((domain.end, domain.start));
+        }
+        for (end, start) in corners {
+            let (before, after) = (path.direction(end, Side::Before), path.direction(start, Side::After));
+            let turn = crate::geometry::number::atan2(before.cross(after).length(), before.dot(after)).to_degrees();
+            if turn > STEEPEST {
+                let message = format!("the path turns back by {turn:.1} degrees at parameter {start}");
+                let report = Diagnostic::error(Code::Reversal, message)
+                    .at(span, format!("corners may turn by up to {STEEPEST} degrees"))
+                    .help("round the corner with an arc or a spline");
+                self.report(report);
+                return None;
+            }
+        }
+        Some(())
+    }
+
+    fn mesh(&mut self, mesh: &spec::Mesh, span: Span) -> Option<Recipe> {
+        let mut polygons = PolygonMesh {
+            points: mesh.points.iter().map(|point| point.value).collect(),
+            has_smoothing: mesh.smoothing_groups.is_some(),
+            ..PolygonMesh::default()
+        };
+        for (index, face) in mesh.faces.iter().enumerate() {
+            let smoothing = mesh.smoothing_groups.as_ref().map_or(0, |groups| groups[index]);
+            polygons.push_face(&[face.value.as_slice()], None, smoothing);
+        }
+        if let Some(uvs) = &mesh.uvs {
+            polygons.uvs = uvs.value.iter().map(|uv| DVec2::new(uv.x, uv.y)).collect();
+            polygons.corner_uvs = match &mesh.face_uvs {
+                Some(faces) => faces.value.iter().flat_map(|face| face.value.iter().copied()).collect(),
+                None => mesh.faces.iter().flat_map(|face| face.value.iter().copied()).collect(),
+            };
+        }
+        if let Err(error) = polygons.validate() {
+            self.report(Diagnostic::error(Code::BadMesh, error.to_string()).at(span, "this mesh"));
+            return None;
+        }
+        Some(Recipe::Polygons { mesh: polygons, materials: Vec::new() })
+    }
+}
+
+fn turned(profile: AnyCurve) -> Recipe {
+    Recipe::Revolution(Revolution { profile, start: 0.0, angle: 360.0, caps: true })
+}
+
+/// The mirror image in a plane.
+fn reflection(normal: DVec3, point: DVec3) -> DAffine3 {
+    let normal = normal.normalize();
+    let matrix = DMat3::IDENTITY
+        - DMat3::from_cols(normal * (2.0 * normal.x), normal * (2.0 * normal.y), normal * (2.0 * normal.z));
+    DAffine3 { matrix3: matrix, translation: normal * (2.0 * normal.dot(point)) }
+}
+
+/// Where the copies of an array stand.
+fn copies(array: &spec::Array) -> Vec<DAffine3> {
+    let offset = array.offset.value;
+    match array.count.value {
+        Count::Row(count) => {
+            let center = array.around.value;
+            let step = |k: u32| {
+                let turn = placement(DVec3::ONE, array.rotate.value * f64::from(k), DVec3::ZERO);
+                DAffine3::from_translation(offset * f64::from(k) + center)
+                    * turn
+                    * DAffine3::from_translation(-center)
+            };
+            (0..count).map(step).collect()
+        }
+        Count::Block([nx, ny, nz]) => {
+            let mut all = Vec::new();
+            for z in 0..nz {
+                for y in 0..ny {
+                    for x in 0..nx {
+                        let place = DVec3::new(f64::from(x), f64::from(y), f64::from(z)) * offset;
+                        all.push(DAffine3::from_translation(place));
+                    }
+                }
+            }
+            all
+        }
+    }
+}

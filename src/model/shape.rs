@@ -1,0 +1,101 @@
+//! Shapes as recipes.
+
+use glam::{DAffine3, DVec2, DVec3};
+
+use super::MaterialHandle;
+use crate::geometry::mesh::PolygonMesh;
+use crate::geometry::tessellate::{Extrusion, Revolution, Sweep};
+
+/// Index of a shape in its model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ShapeHandle(pub u32);
+
+/// A shape: how it is made and what holds for the result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// Its name; a shape written in place has the name of its user and a number.
+    pub name: String,
+    /// How it is made.
+    pub recipe: Recipe,
+    /// What holds for the result.
+    pub options: ShapeOptions,
+}
+
+/// How a shape is made.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Recipe {
+    /// A box.
+    Cuboid {
+        /// Lengths of its edges.
+        size: DVec3,
+        /// Its middle.
+        center: DVec3,
+    },
+    /// A profile turned about the y axis; spheres and cylinders too.
+    Revolution(Revolution),
+    /// Outlines pushed along z.
+    Extrusion(Extrusion),
+    /// A section carried along a path.
+    Sweep(Sweep),
+    /// Polygons, written out or imported. For each of their materials the model's, if it has one.
+    Polygons {
+        /// The polygons.
+        mesh: PolygonMesh,
+        /// For each entry of [`PolygonMesh::materials`].
+        materials: Vec<Option<MaterialHandle>>,
+    },
+    /// Other shapes, each under maps; more than one map makes as many copies.
+    Assembly(Vec<(ShapeHandle, DAffine3)>),
+}
+
+/// What holds for a shape whatever its kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeOptions {
+    /// Distance allowed between mesh and surface, in the document's unit.
+    pub tolerance: Option<f64>,
+    /// A fixed grid instead.
+    pub density: Option<Density>,
+    /// Where it looks smooth.
+    pub smoothing: Smoothing,
+    /// Edges that turn by more degrees are hard.
+    pub crease_angle: f64,
+    /// When texture coordinates are written.
+    pub uv: UvMode,
+    /// Repeats of the texture.
+    pub uv_scale: DVec2,
+    /// Its material.
+    pub material: Option<MaterialHandle>,
+    /// Scale, rotation and place, applied to the finished shape.
+    pub placement: DAffine3,
+}
+
+/// Steps of a fixed grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Density {
+    /// Along the first parameter.
+    pub u: u32,
+    /// Along the second parameter.
+    pub v: u32,
+}
+
+/// Where a shape looks smooth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Smoothing {
+    /// But for corners beyond the crease angle, or by smoothing groups.
+    Auto,
+    /// Nowhere.
+    Flat,
+    /// Everywhere.
+    Smooth,
+}
+
+/// When texture coordinates are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UvMode {
+    /// When the material has a texture.
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    None,
+}
