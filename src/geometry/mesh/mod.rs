@@ -4,6 +4,22 @@
 //! when they share its two points), `vertices` are what a renderer needs (a point with one normal and one
 //! UV). Several vertices may stand on one point; that is a hard edge or a UV seam, never a crack.
 
+//!
+//! A [`PolygonMesh`] is what an author or a file gives; [`convert`](convert::convert) makes a [`Mesh`] of it. Promise: indices
+//! in range, boundary edges kept exactly, hard edges where asked. Not promised: that the result is closed,
+//! or free of self-intersections; [`topology`] measures the first on any index buffer.
+
+pub mod convert;
+mod normals;
+pub mod polygon;
+pub mod polygon_facts;
+pub mod topology;
+mod transform;
+pub mod triangulate;
+pub mod weld;
+
+pub use polygon::PolygonMesh;
+
 use glam::{DVec2, DVec3};
 
 /// Index of a point in [`Mesh::points`].
@@ -11,10 +27,26 @@ use glam::{DVec2, DVec3};
 #[repr(transparent)]
 pub struct PointIndex(pub u32);
 
+impl PointIndex {
+    /// The index as a subscript.
+    #[must_use]
+    pub fn subscript(self) -> usize {
+        self.0 as usize
+    }
+}
+
 /// Index of a vertex in [`Mesh::vertices`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct VertexIndex(pub u32);
+
+impl VertexIndex {
+    /// The index as a subscript.
+    #[must_use]
+    pub fn subscript(self) -> usize {
+        self.0 as usize
+    }
+}
 
 /// Where a vertex stands on its exact source: parameters of surface `source` (an index that the maker of the
 /// mesh gives meaning). Never written; it follows every reordering, so that deviation can be measured locally.
@@ -61,4 +93,12 @@ pub struct Mesh {
     pub triangles: Vec<[VertexIndex; 3]>,
     /// Origin of each triangle, as runs.
     pub runs: Vec<Run>,
+}
+
+/// A subscript as a 32-bit index.
+///
+/// # Panics
+/// When there are 2^32 things or more; limits refuse such a mesh long before it exists.
+pub(crate) fn index(subscript: usize) -> u32 {
+    u32::try_from(subscript).expect("limits keep every count below 2^32")
 }

@@ -1,0 +1,312 @@
+//! Laws of triangulation: areas, counts and boundaries, on shapes that break simple ear cutting.
+
+use glam::{DVec2, DVec3};
+
+use super::{TriangulateError, crossing, ring_area, triangulate, triangulate_in_space, turn};
+
+type Ring = Vec<DVec2>;
+
+fn ring(points: &[(f64, f64)]) -> Ring {
+    points.iter().map(|&(x, y)| DVec2::new(x, y)).collect()
+}
+
+fn regular(corners: u32, radius: f64, center: DVec2) -> Ring {
+    (0..corners)
+        .map(|corner| {
+            let (sin, cos) =
+                crate::geometry::number::sin_cos_degrees(360.0 * f64::from(corner) / f64::from(corners));
+            center + radius * DVec2::new(cos, sin)
+        })
+        .collect()
+}
+
+/// Triangulates and checks everything that is promised; returns the number of triangles.
+#[track_caller]
+fn check(rings: &[Ring]) -> usize {
+    let slices: Vec<&[DVec2]> = rings.iter().map(Vec::as_slice).collect();
+    let triangles = triangulate(&slices).expect("the polygon can be triangulated");
+    let points: Vec<DVec2> = rings.iter().flatten().copied().collect();
+    let area = rings.iter().enumerate().fold(0.0, |sum, (number, ring)| {
+        let area = ring_area(ring).abs();
+        if number == 0 { area } else { sum - area }
+    });
+    let sense = ring_area(&rings[0]).signum();
+    let turns = triangles
+        .iter()
+        .map(|t| sense * turn(points[t[0] as usize], points[t[1] as usize], points[t[2] as usize]));
+    let total: f64 = turns.inspect(|&turn| assert!(turn > -1e-12 * area, "a triangle is turned over")).sum();
+    assert!((total - area).abs() <= 1e-12 * area.max(1e-300), "{total} against {area}");
+
+    let place =
+        |corner: u32| points.iter().position(|&point| point == points[corner as usize]).expect("a corner");
+    let mut used: Vec<[usize; 2]> = triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+        .map(|edge| edge.map(place))
+        .collect();
+    used.sort_unstable();
+    assert!(used.windows(2).all(|pair| pair[0] != pair[1]), "an edge is used twice in one direction");
+    let mut start = 0;
+    for (number, ring) in rings.iter().enumerate() {
+        let len = u32::try_from(ring.len()).expect("small");
+        for corner in 0..len {
+            let mut edge = [start + corner, start + (corner + 1) % len].map(place);
+            if number > 0 && ring_area(ring).signum() == sense {
+                edge.reverse();
+            }
+            assert!(used.contains(&edge), "boundary edge {edge:?} is missing");
+            assert!(
+                !used.contains(&[edge[1], edge[0]]),
+                "boundary edge {edge:?} has triangles on both sides"
+            );
+        }
+        start += len;
+    }
+    triangles.len()
+}
+
+#[test]
+fn regular_polygons() {
+    for corners in 3..60 {
+        assert_eq!(check(&[regular(corners, 2.5, DVec2::new(1.0, -3.0))]), corners as usize - 2);
+    }
+}
+
+#[test]
+fn turning_the_outer_ring_turns_the_triangles() {
+    let mut star = Vec::new();
+    for (outer, inner) in regular(7, 2.0, DVec2::ZERO).into_iter().zip(regular(7, 0.5, DVec2::ZERO)) {
+        star.extend([outer, inner]);
+    }
+    assert_eq!(check(&[star.clone()]), 12);
+    star.reverse();
+    assert_eq!(check(&[star]), 12);
+}
+
+#[test]
+fn collinear_points_stay_connected() {
+    for extra in 1..9 {
+        let mut square = Vec::new();
+        let corners = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+        for side in 0..4 {
+            let (from, to) = (corners[side], corners[(side + 1) % 4]);
+            square.extend((0..extra).map(|step| from.lerp(to, f64::from(step) / f64::from(extra))));
+        }
+        let count = square.len();
+        assert_eq!(check(&[square]), count - 2, "{extra} pieces a side");
+    }
+    // The same on a side that is not along an axis, where rounding moves points off the line.
+    let mut side: Ring = (0..=10)
+        .map(|step| DVec2::new(0.1, 0.3).lerp(DVec2::new(2.3, 1.7), f64::from(step) / 10.0))
+        .collect();
+    side.push(DVec2::new(0.0, 5.0));
+    let count = side.len();
+    assert_eq!(check(&[side]), count - 2);
+}
+
+#[test]
+fn lines_of_collinear_points_through_the_inside() {
+    // A comb: teeth whose feet stand on one line, so cutting them leaves collinear chains inside.
+    let mut comb = ring(&[(0.0, 0.0), (0.0, -1.0), (20.0, -1.0), (20.0, 0.0)]);
+    for tooth in (0..10).rev() {
+        let x = 2.0 * f64::from(tooth);
+        comb.extend([DVec2::new(x + 1.5, 0.0), DVec2::new(x + 1.0, 3.0), DVec2::new(x + 0.5, 0.0)]);
+    }
+    let count = comb.len();
+    assert_eq!(check(&[comb]), count - 2);
+}
+
+#[test]
+fn holes_either_way() {
+    let outer = ring(&[(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)]);
+    let mut rings = vec![outer];
+    for x in 0..4 {
+        for y in 0..4 {
+            let mut hole =
+                regular(5 + x, 0.8, DVec2::new(1.5 + 2.3 * f64::from(x), 1.5 + 2.3 * f64::from(y)));
+            if (x + y) % 2 == 0 {
+                hole.reverse();
+            }
+            rings.push(hole);
+        }
+    }
+    let corners: usize = rings.iter().map(Vec::len).sum();
+    assert_eq!(check(&rings), corners + 2 * 16 - 2);
+}
+
+#[test]
+fn holes_that_touch_at_a_corner() {
+    let outer = ring(&[(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)]);
+    let at_corner = ring(&[(0.0, 0.0), (2.0, 1.0), (1.0, 2.0)]);
+    assert_eq!(check(&[outer.clone(), at_corner]), 5);
+    let left = ring(&[(1.0, 1.0), (2.0, 2.0), (1.0, 3.0)]);
+    let right = ring(&[(2.0, 2.0), (3.0, 1.0), (3.0, 3.0)]);
+    assert_eq!(check(&[outer, left, right]), 10);
+}
+
+#[test]
+fn a_keyhole_polygon_is_its_hole() {
+    let keyhole = ring(&[
+        (0.0, 0.0),
+        (4.0, 0.0),
+        (4.0, 4.0),
+        (0.0, 4.0),
+        (0.0, 0.0),
+        (1.0, 1.0),
+        (1.0, 3.0),
+        (3.0, 3.0),
+        (3.0, 1.0),
+        (1.0, 1.0),
+    ]);
+    let triangles = triangulate(&[&keyhole]).expect("a keyhole can be cut");
+    for corner in [0, 4, 5, 9] {
+        assert!(triangles.iter().flatten().any(|&used| used == corner), "corner {corner} lost its sector");
+    }
+    let area: f64 = triangles
+        .iter()
+        .map(|t| turn(keyhole[t[0] as usize], keyhole[t[1] as usize], keyhole[t[2] as usize]))
+        .sum();
+    assert_eq!((triangles.len(), area), (8, 24.0));
+}
+
+#[test]
+fn repeated_points_are_passed_over() {
+    let square = ring(&[
+        (0.0, 0.0),
+        (0.0, 0.0),
+        (1.0, 0.0),
+        (1.0, 1.0),
+        (1.0, 1.0),
+        (1.0, 1.0),
+        (0.0, 1.0),
+        (0.0, 0.0),
+    ]);
+    let triangles = triangulate(&[&square]).expect("a square");
+    assert_eq!(triangles.len(), 2);
+}
+
+#[test]
+fn quads_are_cut_like_everywhere_else() {
+    let convex = ring(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]);
+    assert_eq!(triangulate(&[&convex]), Ok(vec![[0, 1, 2], [0, 2, 3]]));
+    let concave_at_1 = ring(&[(0.0, 0.0), (1.0, 1.0), (4.0, 0.0), (1.0, 4.0)]);
+    assert_eq!(triangulate(&[&concave_at_1]), Ok(vec![[0, 1, 3], [1, 2, 3]]));
+    let clockwise: Ring = convex.into_iter().rev().collect();
+    assert_eq!(triangulate(&[&clockwise]), Ok(vec![[0, 1, 2], [0, 2, 3]]));
+}
+
+#[test]
+fn faults_are_named() {
+    let error = |rings: &[Ring]| {
+        triangulate(&rings.iter().map(Vec::as_slice).collect::<Vec<_>>()).expect_err("cannot be triangulated")
+    };
+    assert_eq!(error(&[]), TriangulateError::TooFewCorners { ring: 0, corners: 0 });
+    assert_eq!(
+        error(&[ring(&[(0.0, 0.0), (1.0, 0.0)])]),
+        TriangulateError::TooFewCorners { ring: 0, corners: 2 }
+    );
+    let line = ring(&[(0.0, 0.0), (1.0, 1.0), (2.0, 2.0), (3.0, 3.0)]);
+    assert_eq!(error(std::slice::from_ref(&line)), TriangulateError::NoArea { ring: 0 });
+    assert_eq!(
+        error(&[ring(&[(0.0, 0.0), (f64::NAN, 0.0), (1.0, 1.0)])]),
+        TriangulateError::NotFinite { corner: 1 }
+    );
+    let bow_tie = ring(&[(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 3.0)]);
+    assert_eq!(error(&[bow_tie]), TriangulateError::Crossing { edges: [0, 2] });
+    let square = ring(&[(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0)]);
+    let away = ring(&[(20.0, 20.0), (21.0, 20.0), (20.0, 21.0)]);
+    assert_eq!(error(&[square.clone(), away]), TriangulateError::Unsolved);
+    let across = ring(&[(8.0, 4.0), (10.0, 4.0), (8.0, 5.0)]);
+    assert_eq!(error(&[square, across]), TriangulateError::Crossing { edges: [1, 4] });
+}
+
+#[test]
+fn any_size_of_number() {
+    for scale in [1e-300, 1e-160, 1e-9, 1.0, 1e38, 1e150, 1e300] {
+        let star: Ring = regular(11, scale, DVec2::ZERO)
+            .into_iter()
+            .enumerate()
+            .map(|(k, p)| if k % 2 == 0 { p } else { p * 0.3 })
+            .collect();
+        assert_eq!(triangulate(&[&star]).map(|triangles| triangles.len()), Ok(9), "at {scale}");
+    }
+}
+
+#[test]
+fn in_space_on_every_side() {
+    let outer = [(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (1.0, 1.0), (0.0, 3.0)];
+    let hole = [(0.5, 0.5), (0.5, 0.8), (0.8, 0.5)];
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(0.6, 0.0, 0.8), DVec3::ONE.normalize()];
+    for axis in axes.into_iter().flat_map(|axis| [axis, -axis]) {
+        let side = axis.any_orthonormal_vector();
+        let place = |&(x, y): &(f64, f64)| side * x + axis.cross(side) * y + axis * 7.0;
+        let rings: [Vec<DVec3>; 2] = [outer.iter().map(place).collect(), hole.iter().map(place).collect()];
+        let points: Vec<DVec3> = rings.concat();
+        let triangles = triangulate_in_space(&[&rings[0], &rings[1]]).expect("a polygon");
+        assert_eq!(triangles.len(), 8);
+        let area: DVec3 = triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|corner| points[corner as usize]);
+                (b - a).cross(c - a)
+            })
+            .sum();
+        assert!((area - axis * (2.0 * 6.0 - 0.09)).length() < 1e-12, "{area}");
+    }
+}
+
+/// Every polygon with its corners on a 3 x 3 grid, five corners, all orders: refused if and only if it crosses
+/// itself, touches itself or has no area; else right.
+#[test]
+fn all_small_pentagons() {
+    let place = |cell: usize| {
+        DVec2::new(
+            f64::from(u32::try_from(cell % 3).expect("small")),
+            f64::from(u32::try_from(cell / 3).expect("small")),
+        )
+    };
+    let (mut cut, mut refused) = (0, 0);
+    for code in 0..9_usize.pow(5) {
+        let cells: Vec<usize> = (0..5)
+            .scan(code, |rest, _| {
+                let cell = *rest % 9;
+                *rest /= 9;
+                Some(cell)
+            })
+            .collect();
+        if (0..5).any(|a| (0..a).any(|b| cells[a] == cells[b])) {
+            continue;
+        }
+        let pentagon: Ring = cells.into_iter().map(place).collect();
+        if is_simple(&pentagon) {
+            assert_eq!(check(&[pentagon]), 3);
+            cut += 1;
+        } else {
+            let result = triangulate(&[&pentagon]);
+            let area = ring_area(&pentagon).abs();
+            let points = &pentagon;
+            refused += usize::from(result.is_err());
+            if let Ok(triangles) = result {
+                let total: f64 = triangles
+                    .iter()
+                    .map(|t| turn(points[t[0] as usize], points[t[1] as usize], points[t[2] as usize]).abs())
+                    .sum();
+                assert_eq!(total, area, "{points:?}");
+            }
+        }
+    }
+    assert!(cut > 1000 && refused > 1000, "{cut} cut, {refused} refused");
+}
+
+/// No edge touches another except neighbours at their common corner.
+fn is_simple(ring: &Ring) -> bool {
+    let on_segment = |p: DVec2, a: DVec2, b: DVec2| turn(a, b, p) == 0.0 && (p - a).dot(p - b) <= 0.0;
+    let corners = ring.len();
+    let clear = (0..corners).all(|corner| {
+        (0..corners).all(|side| {
+            let next = (side + 1) % corners;
+            corner == side || corner == next || !on_segment(ring[corner], ring[side], ring[next])
+        })
+    });
+    clear && crossing(&[ring]).is_none()
+}
