@@ -105,7 +105,7 @@ impl Builder<'_> {
             Parameters::Uniform => Parametrization::Uniform,
             Parameters::Chordal => Parametrization::Chordal,
             Parameters::Centripetal => Parametrization::Centripetal,
-            Parameters::Numbers(numbers) => {
+            Parameters::Given(numbers) => {
                 let numbers: Vec<f64> = numbers.iter().map(|number| number.value).collect();
                 return self.through(&points, &numbers, closed, span);
             }

@@ -1,1 +1,14 @@
-//! The optimize stage.
+//! Ordered passes from scene to scene. They never tessellate and know nothing of the model.
+
+mod compact;
+mod tangent;
+
+use crate::scene::Scene;
+
+/// Runs all passes in order.
+pub fn run(scene: &mut Scene) {
+    for geometry in &mut scene.geometries {
+        compact::compact(&mut geometry.mesh);
+    }
+    tangent::tangents(scene);
+}

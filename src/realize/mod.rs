@@ -1,1 +1,65 @@
-//! The realize stage.
+//! From the exact model to the discrete scene at a tolerance.
+//!
+//! Promise: each shape that is shown is made once for all its nodes; the deviation that is reported covers
+//! every part of it, after all maps; the limits hold before memory is taken. Not promised: that a shape is
+//! closed; the report measures that.
+
+mod node;
+mod shape;
+mod source;
+
+pub use source::{Source, Sources, Window, sources};
+
+use thiserror::Error;
+
+use crate::geometry::mesh::polygon::PolygonError;
+use crate::geometry::tessellate::TessellateError;
+use crate::model::{Model, ShapeHandle};
+use crate::scene::Scene;
+
+/// How to realize.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options {
+    /// All tolerances are multiplied by this; 0 means 1.
+    pub coarser: f64,
+}
+
+/// Why a shape has no mesh.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RealizeError {
+    /// The tessellator refused.
+    #[error(transparent)]
+    Tessellate(#[from] TessellateError),
+    /// The polygons are no mesh.
+    #[error(transparent)]
+    Polygons(#[from] PolygonError),
+    /// More vertices than allowed.
+    #[error("this would make at least {needed} {what}, and the limit is {limit}")]
+    Limit {
+        /// What is counted.
+        what: &'static str,
+        /// How many there would be.
+        needed: u64,
+        /// The limit.
+        limit: u64,
+    },
+}
+
+/// A scene, and what was noticed on the way.
+#[derive(Clone, Debug)]
+pub struct Realized {
+    /// The scene.
+    pub scene: Scene,
+    /// For each geometry of the scene, the shape it comes from.
+    pub shapes: Vec<ShapeHandle>,
+    /// Things a person should know, each with its shape.
+    pub notes: Vec<(ShapeHandle, String)>,
+}
+
+/// Makes the scene of a model.
+///
+/// # Errors
+/// Every shape that could not be made, with the reason.
+pub fn scene(model: &Model, options: &Options) -> Result<Realized, Vec<(ShapeHandle, RealizeError)>> {
+    node::scene(model, options)
+}

@@ -1,1 +1,78 @@
-//! The scene stage.
+//! The discrete scene: what a glTF file can hold, and nothing more.
+//!
+//! Promise: a [`Scene`] is in metres with y up, in doubles; [`check`](check::check) alone can turn it into a
+//! [`Checked`], which every writer demands. Not promised of an unchecked scene: anything.
+
+pub mod check;
+
+pub use check::{Checked, SceneError};
+
+pub use crate::model::{AlphaMode, Filter, Image, ImageKind, Material, Texture, Wrap};
+
+use glam::{DQuat, DVec3};
+
+use crate::geometry::mesh::Mesh;
+use crate::geometry::tessellate::Deviation;
+
+/// Everything that is written into one file.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Name of the asset.
+    pub name: String,
+    /// Triangles, each stored once however often it is shown.
+    pub geometries: Vec<Geometry>,
+    /// Geometries with materials.
+    pub meshes: Vec<MeshUse>,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Images; textures refer to them.
+    pub images: Vec<Image>,
+    /// Nodes.
+    pub nodes: Vec<Node>,
+}
+
+/// Triangles and their attributes.
+#[derive(Clone, Debug)]
+pub struct Geometry {
+    /// Name of the shape it comes from.
+    pub name: String,
+    /// Points, vertices, triangles; each run is one primitive, its origin an index into the materials of a
+    /// [`MeshUse`].
+    pub mesh: Mesh,
+    /// Whether texture coordinates are written.
+    pub uv: bool,
+    /// For each vertex a tangent and the sign of the bitangent, where any material has a normal texture.
+    pub tangents: Option<Vec<[f32; 4]>>,
+    /// Distance from the exact shape before rounding.
+    pub deviation: Deviation,
+    /// Distance that was asked for, metres; `None` where a fixed grid or no surface made the mesh.
+    pub tolerance: Option<f64>,
+}
+
+/// A geometry shown with materials.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MeshUse {
+    /// Its name in the file.
+    pub name: String,
+    /// Index into [`Scene::geometries`].
+    pub geometry: usize,
+    /// For each run of the geometry an index into [`Scene::materials`].
+    pub materials: Vec<Option<usize>>,
+}
+
+/// A place in the tree.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// Its name.
+    pub name: String,
+    /// Index into [`Scene::meshes`].
+    pub mesh: Option<usize>,
+    /// Index of the parent.
+    pub parent: Option<usize>,
+    /// Applied last, metres.
+    pub translation: DVec3,
+    /// Applied second.
+    pub rotation: DQuat,
+    /// Applied first.
+    pub scale: DVec3,
+}

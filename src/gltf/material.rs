@@ -1,0 +1,144 @@
+//! Materials, textures, samplers and images.
+
+use gltf::json::image::{Image, MimeType};
+use gltf::json::material::{
+    AlphaCutoff, AlphaMode as JsonAlphaMode, EmissiveFactor, Material as JsonMaterial, NormalTexture,
+    OcclusionTexture, PbrBaseColorFactor, PbrMetallicRoughness, StrengthFactor,
+};
+use gltf::json::texture::{Info, MagFilter, MinFilter, Sampler, Texture as JsonTexture, WrappingMode};
+use gltf::json::validation::Checked;
+use gltf::json::{Index, Root};
+
+use super::buffer::Binary;
+use crate::scene::{AlphaMode, Filter, ImageKind, Material, Scene, Texture, Wrap};
+
+/// Writes the images; index k of the scene is index k of the file.
+pub(super) fn images(root: &mut Root, binary: &mut Binary, scene: &Scene) {
+    for image in &scene.images {
+        let start = binary.start();
+        binary.bytes.extend_from_slice(&image.bytes);
+        let view = binary.view(root, start, None);
+        let mime = match image.kind {
+            ImageKind::Png => "image/png",
+            ImageKind::Jpeg => "image/jpeg",
+        };
+        root.push(Image {
+            buffer_view: Some(view),
+            mime_type: Some(MimeType(mime.to_owned())),
+            name: Some(image.name.clone()),
+            uri: None,
+            extensions: None,
+            extras: None,
+        });
+    }
+}
+
+/// Writes the materials; index k of the scene is index k of the file.
+pub(super) fn materials(root: &mut Root, scene: &Scene) {
+    let mut textures = Textures { seen: Vec::new(), samplers: Vec::new() };
+    for material in &scene.materials {
+        let written = textures.material(root, material);
+        root.push(written);
+    }
+}
+
+/// Textures and samplers written so far: equal ones are written once.
+struct Textures {
+    seen: Vec<Texture>,
+    samplers: Vec<(Wrap, Filter)>,
+}
+
+impl Textures {
+    fn material(&mut self, root: &mut Root, material: &Material) -> JsonMaterial {
+        let strength = |value: f64| StrengthFactor(value as f32);
+        JsonMaterial {
+            alpha_cutoff: match material.alpha {
+                AlphaMode::Mask { cutoff } => Some(AlphaCutoff(cutoff as f32)),
+                _ => None,
+            },
+            alpha_mode: Checked::Valid(match material.alpha {
+                AlphaMode::Opaque => JsonAlphaMode::Opaque,
+                AlphaMode::Mask { .. } => JsonAlphaMode::Mask,
+                AlphaMode::Blend => JsonAlphaMode::Blend,
+            }),
+            double_sided: material.double_sided,
+            name: Some(material.name.clone()),
+            pbr_metallic_roughness: PbrMetallicRoughness {
+                base_color_factor: PbrBaseColorFactor(material.color.map(|part| part as f32)),
+                base_color_texture: self.info(root, material.color_texture),
+                metallic_factor: strength(material.metallic),
+                roughness_factor: strength(material.roughness),
+                metallic_roughness_texture: self.info(root, material.metallic_roughness_texture),
+                extensions: None,
+                extras: None,
+            },
+            normal_texture: material.normal_texture.map(|(texture, scale)| NormalTexture {
+                index: self.texture(root, texture),
+                scale: scale as f32,
+                tex_coord: 0,
+                extensions: None,
+                extras: None,
+            }),
+            occlusion_texture: material.occlusion_texture.map(|(texture, value)| OcclusionTexture {
+                index: self.texture(root, texture),
+                strength: strength(value),
+                tex_coord: 0,
+                extensions: None,
+                extras: None,
+            }),
+            emissive_texture: self.info(root, material.emissive_texture),
+            emissive_factor: EmissiveFactor(material.emissive.map(|part| part as f32)),
+            extensions: None,
+            extras: None,
+        }
+    }
+
+    fn info(&mut self, root: &mut Root, texture: Option<Texture>) -> Option<Info> {
+        texture.map(|texture| Info {
+            index: self.texture(root, texture),
+            tex_coord: 0,
+            extensions: None,
+            extras: None,
+        })
+    }
+
+    fn texture(&mut self, root: &mut Root, texture: Texture) -> Index<JsonTexture> {
+        if let Some(known) = self.seen.iter().position(|seen| *seen == texture) {
+            return Index::new(known as u32);
+        }
+        let sampler = self.sampler(root, texture.wrap, texture.filter);
+        self.seen.push(texture);
+        root.push(JsonTexture {
+            name: None,
+            sampler: Some(sampler),
+            source: Index::new(texture.image.0),
+            extensions: None,
+            extras: None,
+        })
+    }
+
+    fn sampler(&mut self, root: &mut Root, wrap: Wrap, filter: Filter) -> Index<Sampler> {
+        if let Some(known) = self.samplers.iter().position(|seen| *seen == (wrap, filter)) {
+            return Index::new(known as u32);
+        }
+        self.samplers.push((wrap, filter));
+        let mode = Checked::Valid(match wrap {
+            Wrap::Repeat => WrappingMode::Repeat,
+            Wrap::Clamp => WrappingMode::ClampToEdge,
+            Wrap::Mirror => WrappingMode::MirroredRepeat,
+        });
+        let (mag, min) = match filter {
+            Filter::Linear => (MagFilter::Linear, MinFilter::LinearMipmapLinear),
+            Filter::Nearest => (MagFilter::Nearest, MinFilter::NearestMipmapLinear),
+        };
+        root.push(Sampler {
+            mag_filter: Some(Checked::Valid(mag)),
+            min_filter: Some(Checked::Valid(min)),
+            name: None,
+            wrap_s: mode,
+            wrap_t: mode,
+            extensions: None,
+            extras: None,
+        })
+    }
+}

@@ -1,0 +1,301 @@
+//! A checked scene into the bytes of a `.glb` file.
+
+use std::collections::BTreeMap;
+
+use gltf::json::accessor::{ComponentType, Type};
+use gltf::json::buffer::{Buffer, Target};
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::scene::UnitQuaternion;
+use gltf::json::validation::{Checked as Valid, USize64};
+use gltf::json::{Accessor, Asset, Index, Mesh, Node, Root, Scene};
+use thiserror::Error;
+
+use super::buffer::{Binary, Elements, accessor};
+use super::material;
+use crate::geometry::mesh::Anchor;
+use crate::geometry::tessellate::Deviation;
+use crate::scene::{Checked, Geometry};
+
+/// The bytes of a file and what only its writer knows of them.
+#[derive(Clone, Debug)]
+pub struct Written {
+    /// The `.glb` file.
+    pub bytes: Vec<u8>,
+    /// For each geometry of the scene what is known of it.
+    pub geometries: Vec<WrittenGeometry>,
+}
+
+/// What is known of a geometry beyond its bytes.
+#[derive(Clone, Debug)]
+pub struct WrittenGeometry {
+    /// Name of the shape.
+    pub name: String,
+    /// A mesh of the file that shows it.
+    pub mesh: usize,
+    /// Distance from the exact shape before rounding.
+    pub deviation: Deviation,
+    /// Distance that was asked for, metres.
+    pub tolerance: Option<f64>,
+    /// For each written vertex its place on the exact source; empty unless asked for.
+    pub anchors: Vec<Anchor>,
+}
+
+/// What keeps a scene from being one file.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum WriteError {
+    /// The format counts bytes in 32 bits.
+    #[error("the file would have {0} bytes, and a .glb file holds at most 4294967295")]
+    TooLarge(u64),
+}
+
+/// Writes a scene. With `anchors`, the places of all vertices on their sources are kept beside the bytes.
+///
+/// Cost: one pass over the scene; the bytes are allocated once.
+///
+/// # Errors
+/// When the file would pass 4 GiB.
+pub fn write(checked: Checked<'_>, anchors: bool) -> Result<Written, WriteError> {
+    let scene = checked.scene();
+    let mut writer = Writer {
+        root: Root { asset: asset(), ..Root::default() },
+        binary: Binary { bytes: Vec::with_capacity(binary_size(checked)) },
+    };
+    let shared: Vec<Shared> = scene.geometries.iter().map(|geometry| writer.geometry(geometry)).collect();
+    material::images(&mut writer.root, &mut writer.binary, scene);
+    material::materials(&mut writer.root, scene);
+    for mesh in &scene.meshes {
+        writer.mesh(checked, mesh, &shared[mesh.geometry]);
+    }
+    writer.nodes(checked);
+    let known = |(index, geometry): (usize, &Geometry)| WrittenGeometry {
+        name: geometry.name.clone(),
+        mesh: scene.meshes.iter().position(|mesh| mesh.geometry == index).unwrap_or(0),
+        deviation: geometry.deviation,
+        tolerance: geometry.tolerance,
+        anchors: if anchors { geometry.mesh.vertices.iter().map(|v| v.anchor).collect() } else { Vec::new() },
+    };
+    let geometries = scene.geometries.iter().enumerate().map(known).collect();
+    Ok(Written { bytes: writer.finish()?, geometries })
+}
+
+fn asset() -> Asset {
+    Asset {
+        generator: Some(concat!("Kiln ", env!("CARGO_PKG_VERSION")).to_owned()),
+        version: "2.0".to_owned(),
+        ..Asset::default()
+    }
+}
+
+fn binary_size(checked: Checked<'_>) -> usize {
+    let scene = checked.scene();
+    let geometry = |geometry: &Geometry| {
+        let tangent = if geometry.tangents.is_some() { 16 } else { 0 };
+        let uv = if geometry.uv { 8 } else { 0 };
+        let vertices = geometry.mesh.vertices.len();
+        vertices * (24 + tangent + uv) + geometry.mesh.triangles.len() * 3 * index_width(vertices) + 64
+    };
+    let images: usize = scene.images.iter().map(|image| image.bytes.len() + 4).sum();
+    // The header and the JSON chunk are put before; a spare kilobyte a mesh holds most.
+    scene.geometries.iter().map(geometry).sum::<usize>() + images
+}
+
+/// Bytes of an index: 0xFFFF restarts primitives and is no vertex.
+fn index_width(vertices: usize) -> usize {
+    if vertices <= 0xFFFF { 2 } else { 4 }
+}
+
+/// Accessors that all meshes of a geometry share.
+struct Shared {
+    position: Index<Accessor>,
+    normal: Index<Accessor>,
+    tangent: Option<Index<Accessor>>,
+    uv: Option<Index<Accessor>>,
+    /// For each run its indices.
+    indices: Vec<Index<Accessor>>,
+}
+
+struct Writer {
+    root: Root,
+    binary: Binary,
+}
+
+impl Writer {
+    fn geometry(&mut self, geometry: &Geometry) -> Shared {
+        let mesh = &geometry.mesh;
+        let count = mesh.vertices.len();
+        let floats = |shape: Type| Elements { component: ComponentType::F32, shape, count };
+        let (root, binary) = (&mut self.root, &mut self.binary);
+        let position = positions(root, binary, geometry);
+        let normal = binary.attribute(root, floats(Type::Vec3), |bytes| {
+            for vertex in &mesh.vertices {
+                put(bytes, vertex.normal.as_vec3().to_array());
+            }
+        });
+        let tangent = geometry.tangents.as_ref().map(|tangents| {
+            binary.attribute(root, floats(Type::Vec4), |bytes| tangents.iter().for_each(|part| put(bytes, *part)))
+        });
+        let uv = geometry.uv.then(|| {
+            binary.attribute(root, floats(Type::Vec2), |bytes| {
+                for vertex in &mesh.vertices {
+                    put(bytes, vertex.uv.as_vec2().to_array());
+                }
+            })
+        });
+        let indices = indices(root, binary, geometry);
+        Shared { position, normal, tangent, uv, indices }
+    }
+
+    fn mesh(&mut self, checked: Checked<'_>, mesh: &crate::scene::MeshUse, shared: &Shared) {
+        let scene = checked.scene();
+        let runs = &scene.geometries[mesh.geometry].mesh.runs;
+        let primitive = |(run, indices): (&crate::geometry::mesh::Run, &Index<Accessor>)| {
+            let material = mesh.materials[run.origin as usize];
+            let worn = material.map(|index| &scene.materials[index]);
+            let bumps = worn.is_some_and(|material| material.normal_texture.is_some());
+            let mut attributes = BTreeMap::new();
+            attributes.insert(Valid::Valid(Semantic::Positions), shared.position);
+            attributes.insert(Valid::Valid(Semantic::Normals), shared.normal);
+            if let Some(tangent) = shared.tangent.filter(|_| bumps) {
+                attributes.insert(Valid::Valid(Semantic::Tangents), tangent);
+            }
+            if let Some(uv) = shared.uv {
+                attributes.insert(Valid::Valid(Semantic::TexCoords(0)), uv);
+            }
+            Primitive {
+                attributes,
+                extensions: None,
+                extras: None,
+                indices: Some(*indices),
+                material: material.map(|index| Index::new(index as u32)),
+                mode: Valid::Valid(Mode::Triangles),
+                targets: None,
+            }
+        };
+        let primitives = runs.iter().zip(&shared.indices).map(primitive).collect();
+        self.root.push(Mesh {
+            extensions: None,
+            extras: None,
+            name: Some(mesh.name.clone()),
+            primitives,
+            weights: None,
+        });
+    }
+
+    fn nodes(&mut self, checked: Checked<'_>) {
+        let scene = checked.scene();
+        let children = |parent: Option<usize>| -> Vec<Index<Node>> {
+            let of = |(index, node): (usize, &crate::scene::Node)| {
+                (node.parent == parent).then(|| Index::new(index as u32))
+            };
+            scene.nodes.iter().enumerate().filter_map(of).collect()
+        };
+        for (index, node) in scene.nodes.iter().enumerate() {
+            let below = children(Some(index));
+            let plain = |vector: glam::DVec3, rest: glam::DVec3| {
+                (vector != rest).then(|| vector.as_vec3().to_array())
+            };
+            self.root.push(Node {
+                camera: None,
+                children: (!below.is_empty()).then_some(below),
+                extensions: None,
+                extras: None,
+                matrix: None,
+                mesh: node.mesh.map(|mesh| Index::new(mesh as u32)),
+                name: Some(node.name.clone()),
+                rotation: (node.rotation != glam::DQuat::IDENTITY)
+                    .then(|| UnitQuaternion(node.rotation.as_quat().to_array())),
+                scale: plain(node.scale, glam::DVec3::ONE),
+                translation: plain(node.translation, glam::DVec3::ZERO),
+                skin: None,
+                weights: None,
+            });
+        }
+        let nodes = children(None);
+        let scene = self.root.push(Scene {
+            extensions: None,
+            extras: None,
+            name: Some(scene.name.clone()),
+            nodes,
+        });
+        self.root.scene = Some(scene);
+    }
+
+    /// Header, JSON chunk and binary chunk.
+    fn finish(mut self) -> Result<Vec<u8>, WriteError> {
+        self.binary.start();
+        let binary = self.binary.bytes;
+        self.root.buffers.push(Buffer {
+            byte_length: USize64::from(binary.len()),
+            name: None,
+            uri: None,
+            extensions: None,
+            extras: None,
+        });
+        let mut json = serde_json::to_vec(&self.root).expect("a glTF document has no map with other keys than text");
+        json.resize(json.len().next_multiple_of(4), b' ');
+        let length = 12 + 8 + json.len() as u64 + 8 + binary.len() as u64;
+        if length > u64::from(u32::MAX) {
+            return Err(WriteError::TooLarge(length));
+        }
+        let word = |value: usize| u32::try_from(value).unwrap_or(u32::MAX).to_le_bytes();
+        let mut head = Vec::with_capacity(json.len() + 28);
+        head.extend_from_slice(b"glTF");
+        head.extend_from_slice(&word(2));
+        head.extend_from_slice(&word(length as usize));
+        head.extend_from_slice(&word(json.len()));
+        head.extend_from_slice(b"JSON");
+        head.extend_from_slice(&json);
+        head.extend_from_slice(&word(binary.len()));
+        head.extend_from_slice(b"BIN\0");
+        let mut bytes = binary;
+        bytes.splice(0..0, head);
+        Ok(bytes)
+    }
+}
+
+fn put<const N: usize>(bytes: &mut Vec<u8>, numbers: [f32; N]) {
+    for number in numbers {
+        // Zero has one form, so that equal positions are equal bytes.
+        bytes.extend_from_slice(&(number + 0.0).to_le_bytes());
+    }
+}
+
+fn positions(root: &mut Root, binary: &mut Binary, geometry: &Geometry) -> Index<Accessor> {
+    let mesh = &geometry.mesh;
+    let start = binary.start();
+    let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for vertex in &mesh.vertices {
+        let position = (mesh.points[vertex.point.0 as usize].as_vec3() + 0.0).to_array();
+        for axis in 0..3 {
+            min[axis] = min[axis].min(position[axis]);
+            max[axis] = max[axis].max(position[axis]);
+        }
+        put(&mut binary.bytes, position);
+    }
+    let view = binary.view(root, start, Some(Target::ArrayBuffer));
+    let elements = Elements { component: ComponentType::F32, shape: Type::Vec3, count: mesh.vertices.len() };
+    root.push(accessor(view, 0, elements, Some((min, max))))
+}
+
+fn indices(root: &mut Root, binary: &mut Binary, geometry: &Geometry) -> Vec<Index<Accessor>> {
+    let mesh = &geometry.mesh;
+    let width = index_width(mesh.vertices.len());
+    let start = binary.start();
+    for vertex in mesh.triangles.iter().flatten() {
+        match u16::try_from(vertex.0) {
+            Ok(short) if width == 2 => binary.bytes.extend_from_slice(&short.to_le_bytes()),
+            _ => binary.bytes.extend_from_slice(&vertex.0.to_le_bytes()),
+        }
+    }
+    let view = binary.view(root, start, Some(Target::ElementArrayBuffer));
+    let component = if width == 2 { ComponentType::U16 } else { ComponentType::U32 };
+    let mut first = 0;
+    let mut accessors = Vec::with_capacity(mesh.runs.len());
+    for run in &mesh.runs {
+        let elements = Elements { component, shape: Type::Scalar, count: (run.end - first) as usize * 3 };
+        let offset = first as usize * 3 * width;
+        accessors.push(root.push(accessor(view, offset, elements, None)));
+        first = run.end;
+    }
+    accessors
+}

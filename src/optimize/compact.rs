@@ -1,0 +1,96 @@
+//! Leaves out vertices and points that no triangle uses, and triangles that use one vertex twice.
+
+use crate::geometry::mesh::{Mesh, PointIndex, VertexIndex};
+
+/// Renumbers what is used, in the order it stands. O(size of the mesh); nothing moves when all is used.
+pub(super) fn compact(mesh: &mut Mesh) {
+    drop_collapsed(mesh);
+    let mut vertex_used = vec![false; mesh.vertices.len()];
+    for triangle in &mesh.triangles {
+        triangle.iter().for_each(|vertex| vertex_used[vertex.0 as usize] = true);
+    }
+    if vertex_used.iter().any(|used| !used) {
+        let places = renumber(&vertex_used);
+        let mut keep = vertex_used.iter();
+        mesh.vertices.retain(|_| keep.next().copied().unwrap_or(false));
+        for triangle in &mut mesh.triangles {
+            *triangle = triangle.map(|vertex| VertexIndex(places[vertex.0 as usize]));
+        }
+    }
+    let mut point_used = vec![false; mesh.points.len()];
+    mesh.vertices.iter().for_each(|vertex| point_used[vertex.point.0 as usize] = true);
+    if point_used.iter().any(|used| !used) {
+        let places = renumber(&point_used);
+        let mut keep = point_used.iter();
+        mesh.points.retain(|_| keep.next().copied().unwrap_or(false));
+        for vertex in &mut mesh.vertices {
+            vertex.point = PointIndex(places[vertex.point.0 as usize]);
+        }
+    }
+}
+
+fn renumber(used: &[bool]) -> Vec<u32> {
+    let mut next = 0;
+    used.iter()
+        .map(|used| {
+            let place = next;
+            next += u32::from(*used);
+            place
+        })
+        .collect()
+}
+
+/// A triangle with two corners on one point has no area and both its other edges cancel.
+fn drop_collapsed(mesh: &mut Mesh) {
+    let point = |vertex: VertexIndex| mesh.vertices[vertex.0 as usize].point;
+    let collapsed = |[a, b, c]: &[VertexIndex; 3]| {
+        point(*a) == point(*b) || point(*b) == point(*c) || point(*c) == point(*a)
+    };
+    if !mesh.triangles.iter().any(collapsed) {
+        return;
+    }
+    let keep: Vec<bool> = mesh.triangles.iter().map(|triangle| !collapsed(triangle)).collect();
+    let mut kept_before = 0;
+    let mut start = 0;
+    let mut runs = Vec::with_capacity(mesh.runs.len());
+    for run in &mesh.runs {
+        kept_before += keep[start..run.end as usize].iter().filter(|keep| **keep).count() as u32;
+        start = run.end as usize;
+        let empty = runs.last().map_or(0, |last: &crate::geometry::mesh::Run| last.end) == kept_before;
+        if !empty {
+            runs.push(crate::geometry::mesh::Run { origin: run.origin, end: kept_before });
+        }
+    }
+    mesh.runs = runs;
+    let mut keep = keep.into_iter();
+    mesh.triangles.retain(|_| keep.next().unwrap_or(false));
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec2, DVec3};
+
+    use super::compact;
+    use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+
+    #[test]
+    fn unused_and_collapsed_parts_go_and_the_rest_keeps_its_order() {
+        let vertex = |point: u32| Vertex {
+            point: PointIndex(point),
+            normal: DVec3::Z,
+            uv: DVec2::ZERO,
+            anchor: Anchor::default(),
+        };
+        let triangle = |a: u32, b: u32, c: u32| [a, b, c].map(VertexIndex);
+        let mut mesh = Mesh {
+            points: vec![DVec3::ZERO, DVec3::ONE, DVec3::X, DVec3::Y, DVec3::Z],
+            vertices: [0, 2, 1, 3, 3].map(vertex).to_vec(),
+            triangles: vec![triangle(0, 3, 4), triangle(0, 1, 3), triangle(3, 4, 1)],
+            runs: vec![Run { origin: 0, end: 1 }, Run { origin: 1, end: 2 }, Run { origin: 2, end: 3 }],
+        };
+        compact(&mut mesh);
+        assert_eq!(mesh.triangles, vec![triangle(0, 1, 2)]);
+        assert_eq!(mesh.runs, vec![Run { origin: 1, end: 1 }]);
+        assert_eq!(mesh.points, vec![DVec3::ZERO, DVec3::X, DVec3::Y]);
+    }
+}

@@ -1,0 +1,76 @@
+//! MikkTSpace tangents, where and only where a normal texture is shown.
+//!
+//! The one place that calls `meshopt`: its functions trust their input, so all is checked here first.
+//! Source: M. Mikkelsen, Simulation of wrinkled surfaces revisited, 2008; meshopt's compatible mode agrees
+//! with the reference implementation. Vertices whose corners have different tangents are split.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+use meshopt::TangentOptions;
+
+use crate::geometry::mesh::{Mesh, VertexIndex};
+use crate::scene::{Geometry, Scene};
+
+/// Gives tangents to every geometry that is shown with a normal texture.
+pub(super) fn tangents(scene: &mut Scene) {
+    for index in 0..scene.geometries.len() {
+        let shown = scene.meshes.iter().filter(|mesh| mesh.geometry == index);
+        let materials = shown.flat_map(|mesh| mesh.materials.iter().flatten());
+        let needed = materials.into_iter().any(|material| scene.materials[*material].normal_texture.is_some());
+        let geometry = &mut scene.geometries[index];
+        if needed && geometry.uv && !geometry.mesh.triangles.is_empty() {
+            add_tangents(geometry);
+        }
+    }
+}
+
+fn add_tangents(geometry: &mut Geometry) {
+    let corners = corner_tangents(&geometry.mesh);
+    let mesh = &mut geometry.mesh;
+    let mut tangents: Vec<Option<[f32; 4]>> = vec![None; mesh.vertices.len()];
+    // Further vertices of one that is split, found by their tangent's bits; only looked up, never walked.
+    let mut split: HashMap<(u32, [u32; 4]), VertexIndex> = HashMap::new();
+    for (corner, tangent) in corners.into_iter().enumerate() {
+        let vertex = mesh.triangles[corner / 3][corner % 3];
+        let slot = &mut tangents[vertex.0 as usize];
+        match slot {
+            None => *slot = Some(tangent),
+            Some(known) if *known == tangent => {}
+            Some(_) => {
+                let key = (vertex.0, tangent.map(f32::to_bits));
+                let twin = *split.entry(key).or_insert_with(|| {
+                    mesh.vertices.push(mesh.vertices[vertex.0 as usize]);
+                    tangents.push(Some(tangent));
+                    VertexIndex(mesh.vertices.len() as u32 - 1)
+                });
+                mesh.triangles[corner / 3][corner % 3] = twin;
+            }
+        }
+    }
+    geometry.tangents = Some(tangents.into_iter().map(|tangent| tangent.unwrap_or([1.0, 0.0, 0.0, 1.0])).collect());
+}
+
+/// A tangent for each corner, of unit length and perpendicular to nothing in particular, as MikkTSpace has it.
+fn corner_tangents(mesh: &Mesh) -> Vec<[f32; 4]> {
+    let single = |vector: DVec3| vector.as_vec3().to_array();
+    let positions: Vec<[f32; 3]> =
+        mesh.vertices.iter().map(|vertex| single(mesh.points[vertex.point.0 as usize])).collect();
+    let normals: Vec<[f32; 3]> = mesh.vertices.iter().map(|vertex| single(vertex.normal)).collect();
+    let uvs: Vec<[f32; 2]> = mesh.vertices.iter().map(|vertex| vertex.uv.as_vec2().to_array()).collect();
+    let indices: Vec<u32> = mesh.triangles.iter().flatten().map(|vertex| vertex.0).collect();
+    let count = positions.len() as u32;
+    assert!(indices.iter().all(|index| *index < count), "a mesh's indices are in range");
+    let made =
+        meshopt::generate_tangents(Some(&indices), &positions, &normals, &uvs, TangentOptions::Compatible);
+    made.into_iter().zip(&indices).map(|(tangent, index)| unit(tangent, normals[*index as usize])).collect()
+}
+
+/// Where texture coordinates have no direction MikkTSpace gives any vector, zero too: any unit tangent serves.
+fn unit([x, y, z, w]: [f32; 4], normal: [f32; 3]) -> [f32; 4] {
+    let tangent = glam::Vec3::new(x, y, z);
+    let tangent = tangent
+        .try_normalize()
+        .unwrap_or_else(|| glam::Vec3::from_array(normal).normalize_or(glam::Vec3::Y).any_orthonormal_vector());
+    [tangent.x, tangent.y, tangent.z, if w < 0.0 { -1.0 } else { 1.0 }]
+}

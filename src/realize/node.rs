@@ -1,0 +1,168 @@
+//! Nodes, and the meshes they show.
+
+use glam::DVec3;
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+
+use super::shape::{self, Made, Maker};
+use super::{Options, RealizeError, Realized};
+use crate::model::{Frame, MaterialHandle, Model, ShapeHandle};
+use crate::scene::{Geometry, MeshUse, Node, Scene};
+
+/// A shape with the material that a node puts on it.
+type Shown = (ShapeHandle, Option<MaterialHandle>);
+
+pub(super) fn scene(
+    model: &Model,
+    options: &Options,
+) -> Result<Realized, Vec<(ShapeHandle, RealizeError)>> {
+    let mut shown: Vec<Shown> = Vec::new();
+    for node in &model.nodes {
+        let Some(shape) = node.shape else { continue };
+        if !shown.contains(&(shape, node.material)) {
+            shown.push((shape, node.material));
+        }
+    }
+    let mut shapes: Vec<ShapeHandle> = Vec::new();
+    for (shape, _) in &shown {
+        if !shapes.contains(shape) {
+            shapes.push(*shape);
+        }
+    }
+    let made = make_all(model, options, &shapes, &shown)?;
+    Ok(assemble(model, &shapes, &shown, made))
+}
+
+fn make_all(
+    model: &Model,
+    options: &Options,
+    shapes: &[ShapeHandle],
+    shown: &[Shown],
+) -> Result<Vec<Made>, Vec<(ShapeHandle, RealizeError)>> {
+    let maker = Maker::new(model, options);
+    let make = |handle: &ShapeHandle| {
+        let overrides: Vec<_> =
+            shown.iter().filter(|(shape, _)| shape == handle).map(|(_, material)| *material).collect();
+        let uv = shape::wants_uv(model, *handle, &overrides);
+        let mut made = maker.make(*handle, uv).map_err(|error| (*handle, error))?;
+        shape::to_metres(&mut made, &model.frame);
+        Ok(shape::group_by_material(made))
+    };
+    // One shape is made on this thread: waking others costs more than a small shape takes.
+    let results: Vec<Result<Made, _>> = if let [one] = shapes {
+        vec![make(one)]
+    } else {
+        shapes.par_iter().map(make).collect()
+    };
+    let mut made = Vec::new();
+    let mut errors = Vec::new();
+    for result in results {
+        match result {
+            Ok(one) => made.push(one),
+            Err(error) => errors.push(error),
+        }
+    }
+    if errors.is_empty() { Ok(made) } else { Err(errors) }
+}
+
+fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Made>) -> Realized {
+    let materials = used_materials(shown, shapes, &made);
+    let position = |handle: MaterialHandle| materials.iter().position(|known| *known == handle);
+    let mut scene = Scene { name: model.name.clone(), ..Scene::default() };
+    for (shape, material) in shown {
+        let geometry = shapes.iter().position(|known| known == shape).unwrap_or(0);
+        let own = &made[geometry].materials;
+        let worn = own.iter().map(|own| material.or(*own).and_then(position)).collect();
+        let name = match material {
+            Some(material) if shown.iter().any(|(other, plain)| other == shape && plain != &Some(*material)) => {
+                format!("{}.{}", model.shape(*shape).name, model.material(*material).name)
+            }
+            _ => model.shape(*shape).name.clone(),
+        };
+        scene.meshes.push(MeshUse { name, geometry, materials: worn });
+    }
+    let mut notes = Vec::new();
+    for (made, handle) in made.into_iter().zip(shapes) {
+        let overrides: Vec<_> =
+            shown.iter().filter(|(shape, _)| shape == handle).map(|(_, material)| *material).collect();
+        notes.extend(made.notes.iter().map(|note| (*handle, note.clone())));
+        scene.geometries.push(Geometry {
+            name: model.shape(*handle).name.clone(),
+            uv: shape::wants_uv(model, *handle, &overrides),
+            tolerance: made.tolerance,
+            deviation: made.deviation,
+            mesh: made.mesh,
+            tangents: None,
+        });
+    }
+    scene.materials = materials.iter().map(|handle| model.material(*handle).clone()).collect();
+    keep_used_images(model, &mut scene);
+    scene.nodes = nodes(model, shown);
+    Realized { scene, shapes: shapes.to_vec(), notes }
+}
+
+fn used_materials(shown: &[Shown], shapes: &[ShapeHandle], made: &[Made]) -> Vec<MaterialHandle> {
+    let mut used = Vec::new();
+    for (shape, material) in shown {
+        let geometry = shapes.iter().position(|known| known == shape).unwrap_or(0);
+        for own in &made[geometry].materials {
+            if let Some(handle) = material.or(*own) {
+                if !used.contains(&handle) {
+                    used.push(handle);
+                }
+            }
+        }
+    }
+    used
+}
+
+/// Leaves out images that no material shows and renumbers the rest.
+fn keep_used_images(model: &Model, scene: &mut Scene) {
+    let mut kept: Vec<u32> = Vec::new();
+    let mut keep = |image: &mut crate::model::ImageHandle| {
+        let place = kept.iter().position(|known| *known == image.0).unwrap_or_else(|| {
+            kept.push(image.0);
+            kept.len() - 1
+        });
+        image.0 = place as u32;
+    };
+    for material in &mut scene.materials {
+        let plain = [
+            &mut material.color_texture,
+            &mut material.metallic_roughness_texture,
+            &mut material.emissive_texture,
+        ];
+        for texture in plain.into_iter().flatten() {
+            keep(&mut texture.image);
+        }
+        for (texture, _) in [&mut material.normal_texture, &mut material.occlusion_texture].into_iter().flatten() {
+            keep(&mut texture.image);
+        }
+    }
+    scene.images = kept.iter().map(|image| model.images[*image as usize].clone()).collect();
+}
+
+fn nodes(model: &Model, shown: &[Shown]) -> Vec<Node> {
+    let place = |node: &crate::model::Node| {
+        let shape = node.shape?;
+        shown.iter().position(|known| *known == (shape, node.material))
+    };
+    let turn = shape::axes_rotation(&model.frame);
+    let axes = shape::axes(&model.frame);
+    model
+        .nodes
+        .iter()
+        .map(|node| Node {
+            name: node.name.clone(),
+            mesh: place(node),
+            parent: node.parent,
+            translation: axes * node.translation * model.frame.unit,
+            rotation: (turn * node.rotation * turn.conjugate()).normalize(),
+            scale: turned_scale(&model.frame, node.scale),
+        })
+        .collect()
+}
+
+/// Factors along the document's axes, along those of the file: up changes places with depth.
+fn turned_scale(frame: &Frame, scale: DVec3) -> DVec3 {
+    if frame.z_up { DVec3::new(scale.x, scale.z, scale.y) } else { scale }
+}

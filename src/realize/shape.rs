@@ -1,0 +1,349 @@
+//! One shape into triangles.
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+use super::source::source_count;
+use super::{Options, RealizeError};
+use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
+use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex};
+use crate::geometry::tessellate::{
+    Detail, Deviation, SurfaceDensity, TessellateError, Tessellation, cuboid, extrude, revolve, sweep,
+};
+use crate::model::{Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing, UvMode};
+
+/// A shape as triangles in its own space or its user's.
+#[derive(Clone, Debug)]
+pub(super) struct Made {
+    pub(super) mesh: Mesh,
+    /// Material of each origin of the mesh's runs.
+    pub(super) materials: Vec<Option<MaterialHandle>>,
+    pub(super) deviation: Deviation,
+    pub(super) tolerance: Option<f64>,
+    pub(super) notes: Vec<String>,
+}
+
+/// Makes shapes of one model.
+pub(super) struct Maker<'a> {
+    model: &'a Model,
+    coarser: f64,
+}
+
+impl<'a> Maker<'a> {
+    pub(super) fn new(model: &'a Model, options: &Options) -> Self {
+        Self { model, coarser: if options.coarser > 0.0 { options.coarser } else { 1.0 } }
+    }
+
+    /// The shape in the document's unit, its placement applied. Anchors carry the index that
+    /// [`sources`](super::sources) gives to their surface.
+    pub(super) fn make(&self, handle: ShapeHandle, uv: bool) -> Result<Made, RealizeError> {
+        let mut first_source = 0;
+        self.part(handle, uv, None, &mut first_source)
+    }
+
+    fn part(
+        &self,
+        handle: ShapeHandle,
+        uv: bool,
+        inherited: Option<f64>,
+        next_source: &mut u32,
+    ) -> Result<Made, RealizeError> {
+        let shape = self.model.shape(handle);
+        let tolerance = shape.options.tolerance.or(inherited);
+        let mut made = match &shape.recipe {
+            Recipe::Assembly(parts) => self.assembly(parts, (uv, tolerance), next_source)?,
+            recipe => {
+                let mut made = self.leaf(shape, uv, tolerance)?;
+                shift_sources(&mut made, *next_source);
+                *next_source += source_count(recipe);
+                made
+            }
+        };
+        if shape.options.uv_scale != glam::DVec2::ONE && uv {
+            for vertex in &mut made.mesh.vertices {
+                vertex.uv *= shape.options.uv_scale;
+            }
+        }
+        place(&mut made, &shape.options.placement);
+        if let Some(material) = shape.options.material {
+            // A part keeps its own material; what has none takes the whole's.
+            made.materials.iter_mut().for_each(|slot| *slot = slot.or(Some(material)));
+        }
+        Ok(made)
+    }
+
+    fn leaf(&self, shape: &Shape, uv: bool, tolerance: Option<f64>) -> Result<Made, RealizeError> {
+        let stretch = stretch(&shape.options.placement.matrix3);
+        let tolerance = self.tolerance(shape, tolerance);
+        let detail = Detail {
+            density: match shape.options.density {
+                Some(grid) => SurfaceDensity::Grid { u: grid.u, v: grid.v },
+                None => SurfaceDensity::Tolerance(tolerance / stretch),
+            },
+            crease_angle: match shape.options.smoothing {
+                Smoothing::Auto => shape.options.crease_angle,
+                Smoothing::Smooth => 180.0,
+                Smoothing::Flat => 0.0,
+            },
+            uv,
+            triangle_limit: self.model.limits.triangles,
+        };
+        let surface = |made: Tessellation| Made {
+            mesh: made.mesh,
+            materials: vec![None],
+            deviation: made.deviation,
+            tolerance: shape.options.density.is_none().then_some(tolerance),
+            notes: Vec::new(),
+        };
+        let made = match &shape.recipe {
+            Recipe::Cuboid { size, center } => surface(cuboid(*size, *center, uv)),
+            Recipe::Revolution(revolution) => surface(revolve(revolution, &detail)?),
+            Recipe::Extrusion(extrusion) => surface(extrude(extrusion, &detail)?),
+            Recipe::Sweep(path) => surface(sweep(path, &detail)?),
+            Recipe::Polygons { mesh, materials } => self.polygons(shape, mesh, materials)?,
+            Recipe::Assembly(_) => surface(Tessellation { mesh: Mesh::default(), deviation: Deviation::NONE }),
+        };
+        let made = if shape.options.smoothing == Smoothing::Flat { flatten(made) } else { made };
+        self.within_limits(made)
+    }
+
+    fn within_limits(&self, made: Made) -> Result<Made, RealizeError> {
+        let limits = &self.model.limits;
+        let triangles = made.mesh.triangles.len() as u64;
+        if triangles > limits.triangles {
+            return Err(TessellateError::TooMany { needed: triangles, limit: limits.triangles }.into());
+        }
+        let vertices = made.mesh.vertices.len() as u64;
+        if vertices > limits.vertices {
+            return Err(RealizeError::Limit { what: "vertices", needed: vertices, limit: limits.vertices });
+        }
+        Ok(made)
+    }
+
+    /// Tolerance in the document's unit; where none is written, the diagonal of the placed shape / 2000.
+    fn tolerance(&self, shape: &Shape, written: Option<f64>) -> f64 {
+        let tolerance = written.or(self.model.tolerance).unwrap_or_else(|| {
+            let diagonal = super::source::extent(&shape.recipe).diagonal();
+            diagonal * stretch(&shape.options.placement.matrix3) / 2000.0
+        });
+        tolerance * self.coarser
+    }
+
+    fn polygons(
+        &self,
+        shape: &Shape,
+        mesh: &crate::geometry::mesh::PolygonMesh,
+        materials: &[Option<MaterialHandle>],
+    ) -> Result<Made, RealizeError> {
+        let shading = match shape.options.smoothing {
+            Smoothing::Auto => Shading::Auto,
+            Smoothing::Flat => Shading::Flat,
+            Smoothing::Smooth => Shading::Smooth,
+        };
+        let converted = convert(mesh, &ConvertOptions { shading, crease_angle: shape.options.crease_angle })?;
+        let mut notes = Vec::new();
+        if !converted.dropped_faces.is_empty() {
+            notes.push(format!(
+                "{} faces without area are left out, the first is face {}",
+                converted.dropped_faces.len(),
+                converted.dropped_faces[0]
+            ));
+        }
+        if !converted.crossing_faces.is_empty() {
+            notes.push(format!(
+                "{} faces cross themselves and are cut as fans, the first is face {}",
+                converted.crossing_faces.len(),
+                converted.crossing_faces[0]
+            ));
+        }
+        let of = |index: &Option<u32>| index.and_then(|index| materials.get(index as usize).copied().flatten());
+        Ok(Made {
+            materials: converted.materials.iter().map(of).collect(),
+            mesh: converted.mesh,
+            deviation: Deviation::NONE,
+            tolerance: None,
+            notes,
+        })
+    }
+
+    fn assembly(
+        &self,
+        parts: &[(ShapeHandle, DAffine3)],
+        (uv, tolerance): (bool, Option<f64>),
+        next_source: &mut u32,
+    ) -> Result<Made, RealizeError> {
+        let mut whole = Made {
+            mesh: Mesh::default(),
+            materials: Vec::new(),
+            deviation: Deviation::NONE,
+            tolerance: None,
+            notes: Vec::new(),
+        };
+        let mut last: Option<(ShapeHandle, Made, u32)> = None;
+        for (part, map) in parts {
+            let (_, made, sources) = match last.take().filter(|(known, ..)| known == part) {
+                Some(known) => known,
+                None => {
+                    let mut sources = 0;
+                    let tolerance = tolerance.map(|tolerance| tolerance / stretch(&map.matrix3));
+                    (*part, self.part(*part, uv, tolerance, &mut sources)?, sources)
+                }
+            };
+            self.room(&whole, &made)?;
+            let mut copy = made.clone();
+            shift_sources(&mut copy, *next_source);
+            *next_source += sources;
+            place(&mut copy, map);
+            join(&mut whole, &copy);
+            last = Some((*part, made, sources));
+        }
+        Ok(whole)
+    }
+
+    fn room(&self, whole: &Made, part: &Made) -> Result<(), RealizeError> {
+        let limits = &self.model.limits;
+        let triangles = (whole.mesh.triangles.len() + part.mesh.triangles.len()) as u64;
+        let vertices = (whole.mesh.vertices.len() + part.mesh.vertices.len()) as u64;
+        for (what, needed, limit) in
+            [("triangles", triangles, limits.triangles), ("vertices", vertices, limits.vertices)]
+        {
+            if needed > limit {
+                return Err(RealizeError::Limit { what, needed, limit });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn join(whole: &mut Made, part: &Made) {
+    let offset = whole.materials.len() as u32;
+    whole.mesh.append(&part.mesh, offset);
+    whole.materials.extend(&part.materials);
+    whole.deviation = whole.deviation.union(part.deviation);
+    whole.tolerance = match (whole.tolerance, part.tolerance) {
+        (Some(one), Some(other)) => Some(one.max(other)),
+        (one, other) => one.or(other),
+    };
+    for note in &part.notes {
+        if !whole.notes.contains(note) {
+            whole.notes.push(note.clone());
+        }
+    }
+}
+
+/// Counts on the sources of a part after those before it.
+fn shift_sources(made: &mut Made, first: u32) {
+    if first > 0 {
+        made.mesh.vertices.iter_mut().for_each(|vertex| vertex.anchor.source += first);
+    }
+}
+
+fn place(made: &mut Made, map: &DAffine3) {
+    if *map == DAffine3::IDENTITY {
+        return;
+    }
+    made.mesh.transform(map);
+    let stretch = stretch(&map.matrix3);
+    made.deviation.bound *= stretch;
+    made.tolerance = made.tolerance.map(|tolerance| tolerance * stretch);
+}
+
+/// The greatest factor by which a map stretches a length.
+pub(super) fn stretch(matrix: &DMat3) -> f64 {
+    let columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let skew: f64 = [(0, 1), (1, 2), (2, 0)].iter().map(|(a, b)| columns[*a].dot(columns[*b]).abs()).sum();
+    let longest = columns.iter().map(|column| column.length()).fold(0.0, f64::max);
+    if skew <= 1e-9 * longest * longest {
+        longest
+    } else {
+        columns.iter().map(|column| column.length_squared()).sum::<f64>().sqrt()
+    }
+}
+
+/// Gives every triangle its own normal; vertices are shared no more.
+fn flatten(mut made: Made) -> Made {
+    let mesh = &mut made.mesh;
+    let mut vertices: Vec<Vertex> = Vec::with_capacity(mesh.triangles.len() * 3);
+    for triangle in &mut mesh.triangles {
+        let corners = triangle.map(|vertex| mesh.vertices[vertex.0 as usize]);
+        let [a, b, c] = corners.map(|vertex| mesh.points[vertex.point.0 as usize]);
+        let normal = (b - a).cross(c - a).normalize_or(corners[0].normal);
+        for (slot, vertex) in triangle.iter_mut().zip(corners) {
+            *slot = VertexIndex(vertices.len() as u32);
+            vertices.push(Vertex { normal, ..vertex });
+        }
+    }
+    mesh.vertices = vertices;
+    made
+}
+
+/// Turns and scales a finished shape from the document's unit and axes to metres with y up.
+pub(super) fn to_metres(made: &mut Made, frame: &Frame) {
+    place(made, &frame_map(frame));
+}
+
+/// The map of a frame.
+pub(super) fn frame_map(frame: &Frame) -> DAffine3 {
+    DAffine3::from_mat3(axes(frame) * frame.unit)
+}
+
+/// The rotation that brings the document's up to +y: (x, y, z) becomes (x, z, -y).
+pub(super) fn axes(frame: &Frame) -> DMat3 {
+    if frame.z_up { DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y) } else { DMat3::IDENTITY }
+}
+
+/// The same rotation as a quaternion.
+pub(super) fn axes_rotation(frame: &Frame) -> DQuat {
+    const HALF_ROOT: f64 = core::f64::consts::FRAC_1_SQRT_2;
+    if frame.z_up { DQuat::from_xyzw(-HALF_ROOT, 0.0, 0.0, HALF_ROOT) } else { DQuat::IDENTITY }
+}
+
+/// Whether a shape carries texture coordinates, by its materials and what it asks for.
+pub(super) fn wants_uv(model: &Model, handle: ShapeHandle, overrides: &[Option<MaterialHandle>]) -> bool {
+    let shape = model.shape(handle);
+    match shape.options.uv {
+        UvMode::Always => true,
+        UvMode::None => false,
+        UvMode::Auto => {
+            let textured = |material: &MaterialHandle| model.material(*material).has_texture();
+            overrides.iter().flatten().any(textured) || shows_texture(model, handle)
+        }
+    }
+}
+
+fn shows_texture(model: &Model, handle: ShapeHandle) -> bool {
+    let shape = model.shape(handle);
+    let textured = |material: &MaterialHandle| model.material(*material).has_texture();
+    shape.options.material.iter().any(textured)
+        || match &shape.recipe {
+            Recipe::Assembly(parts) => parts.iter().any(|(part, _)| shows_texture(model, *part)),
+            Recipe::Polygons { materials, .. } => materials.iter().flatten().any(textured),
+            _ => false,
+        }
+}
+
+/// One run for each material, in the order of their first use.
+pub(super) fn group_by_material(made: Made) -> Made {
+    let mut order: Vec<Option<MaterialHandle>> = Vec::new();
+    for run in &made.mesh.runs {
+        let material = made.materials[run.origin as usize];
+        if !order.contains(&material) {
+            order.push(material);
+        }
+    }
+    if order.len() == made.mesh.runs.len() && made.mesh.runs.iter().enumerate().all(|(k, run)| run.origin as usize == k) {
+        return made;
+    }
+    let mut triangles = Vec::with_capacity(made.mesh.triangles.len());
+    let mut runs = Vec::new();
+    for (origin, material) in order.iter().enumerate() {
+        let mut start = 0;
+        for run in &made.mesh.runs {
+            if made.materials[run.origin as usize] == *material {
+                triangles.extend_from_slice(&made.mesh.triangles[start as usize..run.end as usize]);
+            }
+            start = run.end;
+        }
+        runs.push(Run { origin: origin as u32, end: triangles.len() as u32 });
+    }
+    Made { mesh: Mesh { triangles, runs, ..made.mesh }, materials: order, ..made }
+}

@@ -1,0 +1,155 @@
+//! The proof that a scene can be written.
+
+use thiserror::Error;
+
+use super::{Geometry, MeshUse, Node, Scene};
+
+/// A scene that holds what glTF demands. Made only by [`check`].
+#[derive(Clone, Copy, Debug)]
+pub struct Checked<'a> {
+    scene: &'a Scene,
+}
+
+impl<'a> Checked<'a> {
+    /// The scene.
+    #[must_use]
+    pub fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+}
+
+/// What keeps a scene from being written.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SceneError {
+    /// No triangle anywhere.
+    #[error("there is nothing to write: no triangle in any mesh")]
+    Empty,
+    /// A geometry has no triangle.
+    #[error("shape `{0}` has no triangle")]
+    NoTriangle(String),
+    /// A number is not finite or does not fit single precision.
+    #[error("shape `{0}` has a coordinate that is not finite or beyond single precision")]
+    NotFinite(String),
+    /// A normal or tangent is not of unit length.
+    #[error("shape `{0}` has a {1} that is not of unit length")]
+    NotUnit(String, &'static str),
+    /// An index points at nothing.
+    #[error("{0} refers to something that does not exist")]
+    Dangling(String),
+    /// Runs do not cover the triangles in order.
+    #[error("shape `{0}` has runs that do not cover its triangles")]
+    Runs(String),
+    /// More than 32-bit indices or 4 GiB can address.
+    #[error("shape `{0}` is too large for a glTF file")]
+    TooLarge(String),
+    /// Nodes form a cycle.
+    #[error("node `{0}` is its own ancestor")]
+    Cycle(String),
+    /// A node's transform is not finite, or its rotation not of unit length.
+    #[error("node `{0}` has a transform that glTF cannot hold")]
+    Transform(String),
+}
+
+/// Checks a scene. O(size of the scene).
+///
+/// # Errors
+/// The first thing that is wrong.
+pub fn check(scene: &Scene) -> Result<Checked<'_>, SceneError> {
+    if scene.meshes.is_empty() {
+        return Err(SceneError::Empty);
+    }
+    for geometry in &scene.geometries {
+        check_geometry(geometry)?;
+    }
+    for mesh in &scene.meshes {
+        check_use(scene, mesh)?;
+    }
+    for (index, node) in scene.nodes.iter().enumerate() {
+        check_node(scene, index, node)?;
+    }
+    Ok(Checked { scene })
+}
+
+fn check_geometry(geometry: &Geometry) -> Result<(), SceneError> {
+    let name = || geometry.name.clone();
+    let mesh = &geometry.mesh;
+    if mesh.triangles.is_empty() {
+        return Err(SceneError::NoTriangle(name()));
+    }
+    // The greatest index is reserved for primitive restart.
+    if mesh.vertices.len() >= u32::MAX as usize || mesh.triangles.len() >= u32::MAX as usize {
+        return Err(SceneError::TooLarge(name()));
+    }
+    let limit = f64::from(f32::MAX);
+    if !mesh.points.iter().all(|point| point.abs().max_element() <= limit) {
+        return Err(SceneError::NotFinite(name()));
+    }
+    for vertex in &mesh.vertices {
+        if vertex.point.0 as usize >= mesh.points.len() {
+            return Err(SceneError::Dangling(format!("a vertex of shape `{}`", geometry.name)));
+        }
+        // The validator allows 0.0005; rounding to single precision costs 1e-7.
+        if (vertex.normal.length_squared() - 1.0).abs() > 1e-6 || vertex.normal.is_nan() {
+            return Err(SceneError::NotUnit(name(), "normal"));
+        }
+        if !vertex.uv.is_finite() {
+            return Err(SceneError::NotFinite(name()));
+        }
+    }
+    let count = mesh.vertices.len();
+    if mesh.triangles.iter().any(|triangle| triangle.iter().any(|vertex| vertex.0 as usize >= count)) {
+        return Err(SceneError::Dangling(format!("a triangle of shape `{}`", geometry.name)));
+    }
+    check_runs(geometry)?;
+    check_tangents(geometry)
+}
+
+fn check_runs(geometry: &Geometry) -> Result<(), SceneError> {
+    let runs = &geometry.mesh.runs;
+    let increasing = runs.windows(2).all(|pair| pair[0].end < pair[1].end);
+    let covers = runs.last().is_some_and(|run| run.end as usize == geometry.mesh.triangles.len());
+    if increasing && covers { Ok(()) } else { Err(SceneError::Runs(geometry.name.clone())) }
+}
+
+fn check_tangents(geometry: &Geometry) -> Result<(), SceneError> {
+    let Some(tangents) = &geometry.tangents else { return Ok(()) };
+    let unit = |[x, y, z, w]: &[f32; 4]| {
+        (x * x + y * y + z * z - 1.0).abs() < 1e-4 && (*w == 1.0 || *w == -1.0)
+    };
+    if tangents.len() == geometry.mesh.vertices.len() && tangents.iter().all(unit) {
+        Ok(())
+    } else {
+        Err(SceneError::NotUnit(geometry.name.clone(), "tangent"))
+    }
+}
+
+fn check_use(scene: &Scene, mesh: &MeshUse) -> Result<(), SceneError> {
+    let dangling = || SceneError::Dangling(format!("mesh `{}`", mesh.name));
+    let geometry = scene.geometries.get(mesh.geometry).ok_or_else(dangling)?;
+    let origins = geometry.mesh.runs.iter().all(|run| (run.origin as usize) < mesh.materials.len());
+    let materials = mesh.materials.iter().flatten().all(|material| *material < scene.materials.len());
+    if origins && materials { Ok(()) } else { Err(dangling()) }
+}
+
+fn check_node(scene: &Scene, index: usize, node: &Node) -> Result<(), SceneError> {
+    if node.mesh.is_some_and(|mesh| mesh >= scene.meshes.len()) {
+        return Err(SceneError::Dangling(format!("node `{}`", node.name)));
+    }
+    let limit = f64::from(f32::MAX);
+    let finite = node.translation.abs().max_element() <= limit && node.scale.abs().max_element() <= limit;
+    if !finite || (node.rotation.length_squared() - 1.0).abs() > 1e-6 || node.rotation.is_nan() {
+        return Err(SceneError::Transform(node.name.clone()));
+    }
+    let mut ancestor = node.parent;
+    for _ in 0..scene.nodes.len() {
+        let Some(parent) = ancestor else { return Ok(()) };
+        if parent >= scene.nodes.len() {
+            return Err(SceneError::Dangling(format!("node `{}`", node.name)));
+        }
+        if parent == index {
+            break;
+        }
+        ancestor = scene.nodes[parent].parent;
+    }
+    if ancestor.is_none() { Ok(()) } else { Err(SceneError::Cycle(node.name.clone())) }
+}
