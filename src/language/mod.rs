@@ -1,6 +1,7 @@
 //! The language: from text to a typed, resolved [`Spec`](spec::Spec), or every error found.
 
 pub mod diagnostic;
+pub mod expression;
 pub mod source;
 pub mod spec;
 pub mod value;

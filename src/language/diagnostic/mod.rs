@@ -1,8 +1,12 @@
 //! What is wrong with a document, as data: place, message, hint. Rendering is apart.
 
 mod code;
+mod json;
+mod list;
+mod render;
 
 pub use code::Code;
+pub use list::Diagnostics;
 
 use crate::language::source::Span;
 
@@ -123,64 +127,6 @@ impl Diagnostic {
     pub fn place(&self) -> Option<Span> {
         let primary = self.labels.iter().find(|label| label.primary);
         primary.or(self.labels.first()).map(|label| label.span)
-    }
-}
-
-/// Errors and warnings, sorted by place, each once.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Diagnostics(Vec<Diagnostic>);
-
-impl Diagnostics {
-    /// Sorts by file and place, and drops repetitions.
-    #[must_use]
-    pub fn new(mut list: Vec<Diagnostic>) -> Self {
-        list.sort_by(|a, b| order(a).cmp(&order(b)));
-        list.dedup();
-        Self(list)
-    }
-
-    /// Whether any of them is an error.
-    #[must_use]
-    pub fn has_errors(&self) -> bool {
-        self.0.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
-    }
-
-    /// All of them, in order.
-    pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
-        self.0.iter()
-    }
-
-    /// How many there are.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.0.len()
-    }
-
-    /// Whether there is none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    /// All of them as a list.
-    #[must_use]
-    pub fn into_vec(self) -> Vec<Diagnostic> {
-        self.0
-    }
-}
-
-impl From<Diagnostic> for Diagnostics {
-    fn from(one: Diagnostic) -> Self {
-        Self(vec![one])
-    }
-}
-
-impl<'a> IntoIterator for &'a Diagnostics {
-    type Item = &'a Diagnostic;
-    type IntoIter = std::slice::Iter<'a, Diagnostic>;
-
-    fn into_iter(self) -> Self::IntoIter {
-        self.0.iter()
     }
 }
 

@@ -2,6 +2,8 @@
 
 mod files;
 mod map;
+mod text;
 
 pub use files::{DiskFiles, FileError, FileRecord, Files, MemoryFiles, join};
 pub use map::{FileId, Location, SourceMap, Span};
+pub use text::{TextError, decode, readable};

@@ -40,15 +40,14 @@ pub fn show_number(number: f64) -> String {
 #[must_use]
 pub fn quote(text: &str) -> String {
     let cut = text.char_indices().nth(QUOTED).map_or(text.len(), |(at, _)| at);
-    let dots = if cut < text.len() { "..." } else { "" };
-    let escaped: String = text[..cut].chars().flat_map(escape).collect();
-    format!("\"{escaped}{dots}\"")
-}
-
-fn escape(character: char) -> Box<dyn Iterator<Item = char>> {
-    if character == '"' || character.is_control() {
-        Box::new(character.escape_default())
-    } else {
-        Box::new(std::iter::once(character))
+    let mut quoted = String::from("\"");
+    for character in text[..cut].chars() {
+        if character == '"' || character.is_control() {
+            quoted.extend(character.escape_default());
+        } else {
+            quoted.push(character);
+        }
     }
+    quoted.push_str(if cut < text.len() { "...\"" } else { "\"" });
+    quoted
 }

@@ -1,8 +1,11 @@
 //! The value tree: what a document says, before anything is known of its meaning.
 
 mod describe;
+mod parse;
+mod scan;
 
 pub use describe::{quote, show_number};
+pub use parse::parse;
 
 use indexmap::IndexMap;
 

@@ -1,0 +1,147 @@
+//! Text to value tree: every syntax error in one run.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::{FileId, SourceMap, Span};
+use crate::language::value::scan::{DEEPEST, Finding, scan};
+use crate::language::value::{Data, Entry, Table, Value, quote};
+
+/// The most syntax errors that one file reports: what follows so many is rarely the author's.
+const MOST_ERRORS: usize = 50;
+
+/// Parses a file of a map. What cannot be read is left out or [`Data::Broken`], and reported.
+///
+/// Cost: linear in the text.
+#[must_use]
+pub fn parse(sources: &SourceMap, file: FileId) -> (Table, Vec<Diagnostic>) {
+    let text = sources.text(file);
+    let mut parser = Parser { sources, file, found: Vec::new() };
+    if !parser.prepare(text) {
+        return (Table::default(), parser.found);
+    }
+    let (tree, errors) = DeTable::parse_recoverable(text);
+    for error in errors.iter().take(MOST_ERRORS) {
+        parser.syntax(error.span(), error.message());
+    }
+    let table = parser.table(tree.into_inner());
+    (table, parser.found)
+}
+
+struct Parser<'s> {
+    sources: &'s SourceMap,
+    file: FileId,
+    found: Vec<Diagnostic>,
+}
+
+impl Parser<'_> {
+    fn span(&self, range: Range<usize>) -> Span {
+        self.sources.span(self.file, range)
+    }
+
+    /// Checks the raw text; `false` when it must not be parsed.
+    fn prepare(&mut self, text: &str) -> bool {
+        if text.starts_with('\u{feff}') {
+            let report = Diagnostic::error(Code::Syntax, "a second byte order mark");
+            self.found.push(report.at(self.span(0..3), "not TOML"));
+        }
+        let mut good = true;
+        for finding in scan(text) {
+            match finding {
+                Finding::Newer(range, message) => {
+                    let report = Diagnostic::error(Code::Syntax, message.to_owned());
+                    self.found.push(report.at(self.span(range), "not TOML 1.0"));
+                }
+                Finding::TooDeep(at) => {
+                    let message = format!("arrays and tables are nested more than {DEEPEST} deep");
+                    let report = Diagnostic::error(Code::TooDeep, message);
+                    self.found.push(report.at(self.span(at..at + 1), "too deep"));
+                    good = false;
+                }
+            }
+        }
+        good
+    }
+
+    fn syntax(&mut self, range: Option<Range<usize>>, message: &str) {
+        let range = range.unwrap_or(0..0);
+        let span = self.span(range);
+        let (message, expected) = message.split_once(", expected ").unwrap_or((message, ""));
+        let label = if expected.is_empty() { String::new() } else { format!("expected {expected}") };
+        let snippet = self.sources.snippet(span);
+        if message == "duplicate key" {
+            let report = Diagnostic::error(Code::DuplicateName, format!("{} is written twice", name(snippet)));
+            return self.found.push(report.at(span, "the second time"));
+        }
+        self.found.push(Diagnostic::error(Code::Syntax, message).at(span, label));
+    }
+
+    fn table(&mut self, table: DeTable<'_>) -> Table {
+        let mut read = Table::default();
+        read.entries.reserve(table.len());
+        for (key, value) in table {
+            let span = self.span(key.span());
+            let value = self.value(value);
+            read.entries.insert(key.into_inner().into_owned(), Entry { key: span, value });
+        }
+        read
+    }
+
+    fn value(&mut self, value: Spanned<DeValue<'_>>) -> Value {
+        let span = self.span(value.span());
+        let data = match value.into_inner() {
+            DeValue::String(text) => Data::String(text.into_owned()),
+            DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
+                Ok(number) => Data::Integer(number),
+                Err(_) => self.too_large(number.as_str(), span),
+            },
+            DeValue::Float(number) => self.float(number.as_str(), span),
+            DeValue::Boolean(truth) => Data::Boolean(truth),
+            DeValue::Datetime(time) => self.datetime(time.to_string(), span),
+            DeValue::Array(items) => Data::Array(items.into_iter().map(|item| self.value(item)).collect()),
+            DeValue::Table(table) => Data::Table(self.table(table)),
+        };
+        Value { span, data }
+    }
+
+    fn too_large(&mut self, number: &str, span: Span) -> Data {
+        let message = format!("the whole number {} does not fit in 64 bits", unquoted(number));
+        self.found.push(Diagnostic::error(Code::OutOfRange, message).at(span, "too large"));
+        Data::Broken
+    }
+
+    fn float(&mut self, text: &str, span: Span) -> Data {
+        match text.trim_start_matches('+').parse() {
+            Ok(number) => Data::Float(number),
+            Err(_) => {
+                let message = format!("{} is no number", unquoted(text));
+                self.found.push(Diagnostic::error(Code::Syntax, message).at(span, ""));
+                Data::Broken
+            }
+        }
+    }
+
+    /// TOML 1.0 times have seconds.
+    fn datetime(&mut self, read: String, span: Span) -> Data {
+        let written = self.sources.snippet(span);
+        let time = written.split_once(['T', 't', ' ']).map_or(written, |(_, time)| time);
+        let hours_and_minutes = time.as_bytes().get(2) == Some(&b':');
+        if hours_and_minutes && time.as_bytes().get(5) != Some(&b':') {
+            let report = Diagnostic::error(Code::Syntax, "a time of TOML 1.0 has seconds");
+            self.found.push(report.at(span, "expected hours:minutes:seconds"));
+        }
+        Data::Datetime(read)
+    }
+}
+
+fn unquoted(text: &str) -> String {
+    let quoted = quote(text);
+    quoted[1..quoted.len() - 1].to_owned()
+}
+
+fn name(text: &str) -> String {
+    format!("`{}`", unquoted(text.trim_matches(['"', '\''])))
+}
