@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::{Builder, placement};
 use crate::geometry::curve::{
-    AnyCurve, BezierSpline, Continuity, Curve as _, EllipseArc, Helix, Parametrization, Path, Polyline, Reversed,
-    Side, Transformed, interpolate, interpolate_closed, parameters,
+    AnyCurve, BezierSpline, Continuity, Curve as _, EllipseArc, Helix, Parametrization, Path, Polyline,
+    Reversed, Side, Transformed, interpolate, interpolate_closed, parameters,
 };
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
@@ -184,7 +184,11 @@ impl Builder<'_> {
         let spoke = start - center.position;
         if spoke.truncate().length() == 0.0 {
             let message = "the center of an arc is the point it starts from";
-            self.report(Diagnostic::error(Code::Degenerate, message).at(center.span, "no radius").also(span, "the arc"));
+            self.report(
+                Diagnostic::error(Code::Degenerate, message)
+                    .at(center.span, "no radius")
+                    .also(span, "the arc"),
+            );
             return None;
         }
         let y = DVec3::new(-spoke.y, spoke.x, 0.0);
@@ -201,7 +205,8 @@ impl Builder<'_> {
             if joint.value == Joint::Smooth && built.continuity(place) < Continuity::G1 {
                 let t = place as f64;
                 let before = if place == 0 { built.domain().end } else { t };
-                let (before, after) = (built.direction(before, Side::Before), built.direction(t, Side::After));
+                let (before, after) =
+                    (built.direction(before, Side::Before), built.direction(t, Side::After));
                 let turn = crate::geometry::number::atan2(before.cross(after).length(), before.dot(after));
                 let message = format!(
                     "joint {index} of this path is declared smooth, but the direction turns by {:.3} degrees there",

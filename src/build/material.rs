@@ -2,9 +2,10 @@
 
 use super::Builder;
 use crate::language::diagnostic::{Code, Diagnostic};
-use crate::language::source::Files as _;
 use crate::language::spec::{self, Alpha, Sp};
-use crate::model::{AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, Texture, Wrap};
+use crate::model::{
+    AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, Texture, Wrap,
+};
 
 impl Builder<'_> {
     /// The material of a name, built at its first use.
@@ -95,14 +96,12 @@ impl Builder<'_> {
                 return None;
             }
         };
-        let facts = match crate::import::image::read(&bytes, self.spec.limits.image_pixels) {
+        let facts = match crate::import::image::inspect(&bytes, self.spec.limits.image_pixels) {
             Ok(facts) => facts,
             Err(error) => {
                 let message = format!("{} cannot be used as a texture: {error}", file.value.written);
-                let mut report = Diagnostic::error(Code::BadImage, message).at(file.span, "this image");
-                if let Some(hint) = error.hint() {
-                    report = report.help(hint);
-                }
+                let report =
+                    Diagnostic::error(Code::BadImage, message).at(file.span, "this image").help(error.hint());
                 self.report(report);
                 return None;
             }
@@ -111,8 +110,8 @@ impl Builder<'_> {
         Some(Image {
             name: stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
             kind: match facts.kind {
-                crate::import::image::Kind::Png => ImageKind::Png,
-                crate::import::image::Kind::Jpeg => ImageKind::Jpeg,
+                crate::import::image::ImageKind::Png => ImageKind::Png,
+                crate::import::image::ImageKind::Jpeg => ImageKind::Jpeg,
             },
             bytes,
         })

@@ -14,7 +14,7 @@ mod shape;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use indexmap::IndexMap;
 
-use crate::language::diagnostic::{Diagnostic, Diagnostics};
+use crate::language::diagnostic::{Diagnostic, Severity};
 use crate::language::source::{Files, Span};
 use crate::language::spec::{Spec, Up};
 use crate::model::{Frame, ImageHandle, Limits, MaterialHandle, Model, ShapeHandle};
@@ -34,15 +34,14 @@ pub struct Built {
 ///
 /// # Errors
 /// All faults of the document's geometry and of the files it names.
-pub fn model(spec: &Spec, name: &str, files: &dyn Files) -> Result<Built, Diagnostics> {
+pub fn model(spec: &Spec, name: &str, files: &dyn Files) -> Result<Built, Vec<Diagnostic>> {
     let mut builder = Builder::new(spec, name, files);
     builder.build();
     let Builder { model, places, reports, .. } = builder;
-    let reports = Diagnostics::new(reports);
-    if reports.has_errors() {
+    if reports.iter().any(|report| report.severity == Severity::Error) {
         return Err(reports);
     }
-    Ok(Built { model, places, warnings: reports.into_vec() })
+    Ok(Built { model, places, warnings: reports })
 }
 
 /// The model in the making. A definition that failed is `None` in its map and is not tried again.

@@ -15,7 +15,12 @@ impl Builder<'_> {
             self.written_nodes();
         }
         let shows = self.model.nodes.iter().any(|node| node.shape.is_some());
-        if !shows && self.reports.iter().all(|report| report.severity != crate::language::diagnostic::Severity::Error) {
+        if !shows
+            && self
+                .reports
+                .iter()
+                .all(|report| report.severity != crate::language::diagnostic::Severity::Error)
+        {
             let report = Diagnostic::error(Code::NothingToShow, "this document shows no shape")
                 .at(Span::NONE, "")
                 .help("define a shape, as in `[shape.ball.sphere]` with `radius = 0.5`");

@@ -30,7 +30,12 @@ impl Builder<'_> {
         let bounds = Bounds::of_points(rough.iter().map(|station| station.point));
         let size = bounds.diagonal();
         let Ok(stations) = discretize(&curve, Density::Tolerance(size / 4000.0), CHORDS) else {
-            return self.refuse(Code::LimitPassed, &format!("the {what} is too intricate"), span, "too many bends");
+            return self.refuse(
+                Code::LimitPassed,
+                &format!("the {what} is too intricate"),
+                span,
+                "too many bends",
+            );
         };
         if let Some(station) = stations.iter().find(|station| station.point.z.abs() > 1e-9 * size) {
             let message = format!("the {what} is not flat: it reaches z = {}", show(station.point.z));
@@ -63,7 +68,11 @@ impl Builder<'_> {
         let profile = self.profile(reference, "profile")?;
         let least = profile.stations.iter().min_by(|a, b| a.point.x.total_cmp(&b.point.x))?;
         if least.point.x < -1e-9 * profile.size {
-            let message = format!("the profile crosses the axis: x is {} at y = {}", show(least.point.x), show(least.point.y));
+            let message = format!(
+                "the profile crosses the axis: x is {} at y = {}",
+                show(least.point.x),
+                show(least.point.y)
+            );
             let report = Diagnostic::error(Code::AcrossAxis, message)
                 .at(profile.span, "x is the radius and must not be negative")
                 .help("move the points to x >= 0; a profile that ends on the axis ends at x = 0");
@@ -71,7 +80,12 @@ impl Builder<'_> {
             return None;
         }
         if profile.stations.iter().all(|station| station.point.x <= 1e-9 * profile.size) {
-            return self.refuse(Code::NoArea, "the profile lies on the axis", profile.span, "sweeps no surface");
+            return self.refuse(
+                Code::NoArea,
+                "the profile lies on the axis",
+                profile.span,
+                "sweeps no surface",
+            );
         }
         Some(profile)
     }
@@ -96,7 +110,8 @@ impl Profile {
     fn crossing(&self) -> Option<Crossing> {
         let closed = self.curve.is_closed();
         let used = self.stations.len() - usize::from(closed);
-        let points: Vec<DVec2> = self.stations[..used].iter().map(|station| station.point.truncate()).collect();
+        let points: Vec<DVec2> =
+            self.stations[..used].iter().map(|station| station.point.truncate()).collect();
         first_crossing(&points, closed)
     }
 }

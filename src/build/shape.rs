@@ -126,8 +126,7 @@ impl Builder<'_> {
 
     fn extrusion(&mut self, extrude: &spec::Extrude) -> Option<Recipe> {
         let outline = self.closed_profile(&extrude.profile, "outline");
-        let holes: Vec<_> =
-            extrude.holes.iter().map(|hole| self.closed_profile(hole, "hole")).collect();
+        let holes: Vec<_> = extrude.holes.iter().map(|hole| self.closed_profile(hole, "hole")).collect();
         let holes: Option<Vec<_>> = holes.into_iter().collect();
         let (outline, holes) = (outline?, holes?);
         let height = extrude.height.value;
@@ -164,7 +163,8 @@ impl Builder<'_> {
         }
         for (end, start) in corners {
             let (before, after) = (path.direction(end, Side::Before), path.direction(start, Side::After));
-            let turn = crate::geometry::number::atan2(before.cross(after).length(), before.dot(after)).to_degrees();
+            let turn =
+                crate::geometry::number::atan2(before.cross(after).length(), before.dot(after)).to_degrees();
             if turn > STEEPEST {
                 let message = format!("the path turns back by {turn:.1} degrees at parameter {start}");
                 let report = Diagnostic::error(Code::Reversal, message)

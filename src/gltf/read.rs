@@ -78,7 +78,8 @@ pub fn read(bytes: &[u8]) -> Result<Read, ReadError> {
     let root: Root =
         serde_json::from_slice(&container.json).map_err(|error| ReadError::Json(error.to_string()))?;
     let binary = container.bin.as_deref().unwrap_or(&[]);
-    let geometries: Result<Vec<_>, _> = (0..root.meshes.len()).map(|mesh| geometry(&root, binary, mesh)).collect();
+    let geometries: Result<Vec<_>, _> =
+        (0..root.meshes.len()).map(|mesh| geometry(&root, binary, mesh)).collect();
     let geometries = geometries?;
     Ok(Read { root, geometries })
 }
@@ -92,7 +93,8 @@ fn geometry(root: &Root, binary: &[u8], mesh: usize) -> Result<Geometry, ReadErr
         }
         let position = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
         let position = position.ok_or_else(|| ReadError::Missing(format!("POSITION of mesh {mesh}")))?;
-        let known = bases.iter().find(|(accessor, _)| *accessor == position.value() as u32).map(|(_, base)| *base);
+        let known =
+            bases.iter().find(|(accessor, _)| *accessor == position.value() as u32).map(|(_, base)| *base);
         let base = match known {
             Some(base) => base,
             None => {
@@ -127,8 +129,12 @@ fn elements<'a>(
     let at = index.value();
     let accessor = root.accessors.get(at).ok_or_else(|| ReadError::Missing(format!("accessor {at}")))?;
     let view = accessor.buffer_view.filter(|_| accessor.sparse.is_none());
-    let view = view.ok_or_else(|| ReadError::Unsupported(format!("accessor {at}, sparse or without data,")))?;
-    let view = root.buffer_views.get(view.value()).ok_or_else(|| ReadError::Missing(format!("view of accessor {at}")))?;
+    let view =
+        view.ok_or_else(|| ReadError::Unsupported(format!("accessor {at}, sparse or without data,")))?;
+    let view = root
+        .buffer_views
+        .get(view.value())
+        .ok_or_else(|| ReadError::Missing(format!("view of accessor {at}")))?;
     if view.buffer.value() != 0 || root.buffers.first().is_none_or(|buffer| buffer.uri.is_some()) {
         return Err(ReadError::Unsupported("data outside the file".to_owned()));
     }

@@ -132,7 +132,9 @@ impl Writer {
             }
         });
         let tangent = geometry.tangents.as_ref().map(|tangents| {
-            binary.attribute(root, floats(Type::Vec4), |bytes| tangents.iter().for_each(|part| put(bytes, *part)))
+            binary.attribute(root, floats(Type::Vec4), |bytes| {
+                tangents.iter().for_each(|part| put(bytes, *part))
+            })
         });
         let uv = geometry.uv.then(|| {
             binary.attribute(root, floats(Type::Vec2), |bytes| {
@@ -211,12 +213,8 @@ impl Writer {
             });
         }
         let nodes = children(None);
-        let scene = self.root.push(Scene {
-            extensions: None,
-            extras: None,
-            name: Some(scene.name.clone()),
-            nodes,
-        });
+        let scene =
+            self.root.push(Scene { extensions: None, extras: None, name: Some(scene.name.clone()), nodes });
         self.root.scene = Some(scene);
     }
 
@@ -231,7 +229,8 @@ impl Writer {
             extensions: None,
             extras: None,
         });
-        let mut json = serde_json::to_vec(&self.root).expect("a glTF document has no map with other keys than text");
+        let mut json =
+            serde_json::to_vec(&self.root).expect("a glTF document has no map with other keys than text");
         json.resize(json.len().next_multiple_of(4), b' ');
         let length = 12 + 8 + json.len() as u64 + 8 + binary.len() as u64;
         if length > u64::from(u32::MAX) {

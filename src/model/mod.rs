@@ -7,7 +7,9 @@
 mod material;
 mod shape;
 
-pub use material::{AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, Texture, Wrap};
+pub use material::{
+    AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, Texture, Wrap,
+};
 pub use shape::{Density, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode};
 
 use glam::{DQuat, DVec3};

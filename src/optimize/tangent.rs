@@ -17,7 +17,8 @@ pub(super) fn tangents(scene: &mut Scene) {
     for index in 0..scene.geometries.len() {
         let shown = scene.meshes.iter().filter(|mesh| mesh.geometry == index);
         let materials = shown.flat_map(|mesh| mesh.materials.iter().flatten());
-        let needed = materials.into_iter().any(|material| scene.materials[*material].normal_texture.is_some());
+        let needed =
+            materials.into_iter().any(|material| scene.materials[*material].normal_texture.is_some());
         let geometry = &mut scene.geometries[index];
         if needed && geometry.uv && !geometry.mesh.triangles.is_empty() {
             add_tangents(geometry);
@@ -48,7 +49,8 @@ fn add_tangents(geometry: &mut Geometry) {
             }
         }
     }
-    geometry.tangents = Some(tangents.into_iter().map(|tangent| tangent.unwrap_or([1.0, 0.0, 0.0, 1.0])).collect());
+    geometry.tangents =
+        Some(tangents.into_iter().map(|tangent| tangent.unwrap_or([1.0, 0.0, 0.0, 1.0])).collect());
 }
 
 /// A tangent for each corner, of unit length and perpendicular to nothing in particular, as MikkTSpace has it.
@@ -69,8 +71,8 @@ fn corner_tangents(mesh: &Mesh) -> Vec<[f32; 4]> {
 /// Where texture coordinates have no direction MikkTSpace gives any vector, zero too: any unit tangent serves.
 fn unit([x, y, z, w]: [f32; 4], normal: [f32; 3]) -> [f32; 4] {
     let tangent = glam::Vec3::new(x, y, z);
-    let tangent = tangent
-        .try_normalize()
-        .unwrap_or_else(|| glam::Vec3::from_array(normal).normalize_or(glam::Vec3::Y).any_orthonormal_vector());
+    let tangent = tangent.try_normalize().unwrap_or_else(|| {
+        glam::Vec3::from_array(normal).normalize_or(glam::Vec3::Y).any_orthonormal_vector()
+    });
     [tangent.x, tangent.y, tangent.z, if w < 0.0 { -1.0 } else { 1.0 }]
 }

@@ -11,10 +11,7 @@ use crate::scene::{Geometry, MeshUse, Node, Scene};
 /// A shape with the material that a node puts on it.
 type Shown = (ShapeHandle, Option<MaterialHandle>);
 
-pub(super) fn scene(
-    model: &Model,
-    options: &Options,
-) -> Result<Realized, Vec<(ShapeHandle, RealizeError)>> {
+pub(super) fn scene(model: &Model, options: &Options) -> Result<Realized, Vec<(ShapeHandle, RealizeError)>> {
     let mut shown: Vec<Shown> = Vec::new();
     for node in &model.nodes {
         let Some(shape) = node.shape else { continue };
@@ -48,11 +45,8 @@ fn make_all(
         Ok(shape::group_by_material(made))
     };
     // One shape is made on this thread: waking others costs more than a small shape takes.
-    let results: Vec<Result<Made, _>> = if let [one] = shapes {
-        vec![make(one)]
-    } else {
-        shapes.par_iter().map(make).collect()
-    };
+    let results: Vec<Result<Made, _>> =
+        if let [one] = shapes { vec![make(one)] } else { shapes.par_iter().map(make).collect() };
     let mut made = Vec::new();
     let mut errors = Vec::new();
     for result in results {
@@ -73,7 +67,9 @@ fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Ma
         let own = &made[geometry].materials;
         let worn = own.iter().map(|own| material.or(*own).and_then(position)).collect();
         let name = match material {
-            Some(material) if shown.iter().any(|(other, plain)| other == shape && plain != &Some(*material)) => {
+            Some(material)
+                if shown.iter().any(|(other, plain)| other == shape && plain != &Some(*material)) =>
+            {
                 format!("{}.{}", model.shape(*shape).name, model.material(*material).name)
             }
             _ => model.shape(*shape).name.clone(),
@@ -134,7 +130,9 @@ fn keep_used_images(model: &Model, scene: &mut Scene) {
         for texture in plain.into_iter().flatten() {
             keep(&mut texture.image);
         }
-        for (texture, _) in [&mut material.normal_texture, &mut material.occlusion_texture].into_iter().flatten() {
+        for (texture, _) in
+            [&mut material.normal_texture, &mut material.occlusion_texture].into_iter().flatten()
+        {
             keep(&mut texture.image);
         }
     }

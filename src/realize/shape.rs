@@ -100,7 +100,9 @@ impl<'a> Maker<'a> {
             Recipe::Extrusion(extrusion) => surface(extrude(extrusion, &detail)?),
             Recipe::Sweep(path) => surface(sweep(path, &detail)?),
             Recipe::Polygons { mesh, materials } => self.polygons(shape, mesh, materials)?,
-            Recipe::Assembly(_) => surface(Tessellation { mesh: Mesh::default(), deviation: Deviation::NONE }),
+            Recipe::Assembly(_) => {
+                surface(Tessellation { mesh: Mesh::default(), deviation: Deviation::NONE })
+            }
         };
         let made = if shape.options.smoothing == Smoothing::Flat { flatten(made) } else { made };
         self.within_limits(made)
@@ -155,7 +157,8 @@ impl<'a> Maker<'a> {
                 converted.crossing_faces[0]
             ));
         }
-        let of = |index: &Option<u32>| index.and_then(|index| materials.get(index as usize).copied().flatten());
+        let of =
+            |index: &Option<u32>| index.and_then(|index| materials.get(index as usize).copied().flatten());
         Ok(Made {
             materials: converted.materials.iter().map(of).collect(),
             mesh: converted.mesh,
@@ -330,7 +333,9 @@ pub(super) fn group_by_material(made: Made) -> Made {
             order.push(material);
         }
     }
-    if order.len() == made.mesh.runs.len() && made.mesh.runs.iter().enumerate().all(|(k, run)| run.origin as usize == k) {
+    if order.len() == made.mesh.runs.len()
+        && made.mesh.runs.iter().enumerate().all(|(k, run)| run.origin as usize == k)
+    {
         return made;
     }
     let mut triangles = Vec::with_capacity(made.mesh.triangles.len());

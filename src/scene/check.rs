@@ -113,9 +113,8 @@ fn check_runs(geometry: &Geometry) -> Result<(), SceneError> {
 
 fn check_tangents(geometry: &Geometry) -> Result<(), SceneError> {
     let Some(tangents) = &geometry.tangents else { return Ok(()) };
-    let unit = |[x, y, z, w]: &[f32; 4]| {
-        (x * x + y * y + z * z - 1.0).abs() < 1e-4 && (*w == 1.0 || *w == -1.0)
-    };
+    let unit =
+        |[x, y, z, w]: &[f32; 4]| (x * x + y * y + z * z - 1.0).abs() < 1e-4 && (*w == 1.0 || *w == -1.0);
     if tangents.len() == geometry.mesh.vertices.len() && tangents.iter().all(unit) {
         Ok(())
     } else {

@@ -118,7 +118,8 @@ impl FrameField {
         let mut stops = Vec::with_capacity(steps as usize);
         let mut last = start;
         for k in 1..=steps {
-            let t = if k == steps { end } else { start.t + (end - start.t) * f64::from(k) / f64::from(steps) };
+            let t =
+                if k == steps { end } else { start.t + (end - start.t) * f64::from(k) / f64::from(steps) };
             let jet = self.path.evaluate(t, Side::Before);
             let frame = reflect_twice(&last, jet.point, self.path.direction(t, Side::Before));
             let walked = last.walked + last.point.distance(jet.point);

@@ -9,7 +9,7 @@ use super::cap::{CapLoop, Facing, add_cap, twice_area};
 use super::discretize::{Density, Station, arc_lengths, discretize};
 use super::ring::{Row, RowKind, stitch};
 use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessellation};
-use crate::geometry::curve::{AnyCurve, Curve};
+use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex};
 use crate::geometry::number::atan2;
 
@@ -62,10 +62,8 @@ pub fn extrude(shape: &Extrusion, detail: &Detail) -> Result<Tessellation, Tesse
     }
     if shape.caps {
         let source = outlines.len() as u32;
-        let (down, up) = (
-            Facing { normal: DVec3::NEG_Z, mirrored: true },
-            Facing { normal: DVec3::Z, mirrored: false },
-        );
+        let (down, up) =
+            (Facing { normal: DVec3::NEG_Z, mirrored: true }, Facing { normal: DVec3::Z, mirrored: false });
         add_cap(&mut mesh, &ends.0, down, source, detail.uv)?;
         add_cap(&mut mesh, &ends.1, up, source + 1, detail.uv)?;
     }
@@ -102,7 +100,8 @@ fn cut(curve: &AnyCurve, hole: bool, detail: &Detail) -> Result<Outline, Tessell
 
 pub(super) fn reverse(stations: &mut [Station]) {
     stations.reverse();
-    let deviations: Vec<f64> = stations.iter().skip(1).map(|station| station.deviation).chain([0.0]).collect();
+    let deviations: Vec<f64> =
+        stations.iter().skip(1).map(|station| station.deviation).chain([0.0]).collect();
     for (station, deviation) in stations.iter_mut().zip(deviations) {
         (station.before, station.after) = (-station.after, -station.before);
         station.deviation = deviation;

@@ -93,9 +93,11 @@ impl Plan {
         if stations.iter().all(|station| station.point.x == 0.0) {
             return Err(TessellateError::NoArea);
         }
-        let along = if detail.uv { fractions(&arc_lengths(curve, &stations)) } else { vec![0.0; stations.len()] };
+        let along =
+            if detail.uv { fractions(&arc_lengths(curve, &stations)) } else { vec![0.0; stations.len()] };
         let closed = curve.is_closed();
-        let mut plan = Self { backward: runs_backward(&stations), stations, along, steps: Vec::new(), closed, turn };
+        let mut plan =
+            Self { backward: runs_backward(&stations), stations, along, steps: Vec::new(), closed, turn };
         plan.steps = (0..plan.stations.len())
             .map(|index| match (plan.on_axis(index), detail.density, fixed) {
                 (true, _, _) => 0,

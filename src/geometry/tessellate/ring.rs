@@ -46,10 +46,12 @@ pub(super) fn stitch(lower: &Row, upper: &Row, triangles: &mut Vec<[VertexIndex;
     match (lower.kind, upper.kind) {
         (RowKind::Pole | RowKind::Fan, RowKind::Pole | RowKind::Fan) => {}
         (RowKind::Pole | RowKind::Fan, _) => {
-            triangles.extend((0..upper.steps).map(|k| [lower.vertex(k), upper.vertex(k + 1), upper.vertex(k)]));
+            triangles
+                .extend((0..upper.steps).map(|k| [lower.vertex(k), upper.vertex(k + 1), upper.vertex(k)]));
         }
         (_, RowKind::Pole | RowKind::Fan) => {
-            triangles.extend((0..lower.steps).map(|k| [lower.vertex(k), lower.vertex(k + 1), upper.vertex(k)]));
+            triangles
+                .extend((0..lower.steps).map(|k| [lower.vertex(k), lower.vertex(k + 1), upper.vertex(k)]));
         }
         _ => zip(lower, upper, triangles),
     }
@@ -61,8 +63,8 @@ fn zip(lower: &Row, upper: &Row, triangles: &mut Vec<[VertexIndex; 3]>) {
     let (mut i, mut j) = (0, 0);
     while i < lower.steps || j < upper.steps {
         let (front_below, front_above) = (u64::from(i) * below, u64::from(j) * above);
-        let advance_below =
-            i < lower.steps && (j == upper.steps || 2 * (front_below + below) <= 2 * front_above + below + above);
+        let advance_below = i < lower.steps
+            && (j == upper.steps || 2 * (front_below + below) <= 2 * front_above + below + above);
         if advance_below {
             triangles.push([lower.vertex(i), lower.vertex(i + 1), upper.vertex(j)]);
             i += 1;
@@ -104,11 +106,13 @@ mod tests {
                     for (from, to) in [(a, b), (b, c), (c, a)] {
                         if (from >= 1000) != (to >= 1000) {
                             assert!((angle(from) - angle(to)).abs() <= reach, "{below} {above}");
-                            *across.entry((from.min(to), from.max(to))).or_insert(0) += if from < to { 1 } else { -1 };
+                            *across.entry((from.min(to), from.max(to))).or_insert(0) +=
+                                if from < to { 1 } else { -1 };
                         }
                     }
                 }
-                let open: Vec<_> = across.iter().filter(|(_, uses)| **uses != 0).map(|(edge, _)| *edge).collect();
+                let open: Vec<_> =
+                    across.iter().filter(|(_, uses)| **uses != 0).map(|(edge, _)| *edge).collect();
                 assert_eq!(open, [(0, 1000), (below, 1000 + above)]);
             }
         }

@@ -284,7 +284,8 @@ impl Plan {
         (left, right): (usize, usize),
         detail: &Detail,
     ) {
-        let whole = |from: usize, to: usize, count: usize, closed: bool| closed && from == 0 && to == count - 1;
+        let whole =
+            |from: usize, to: usize, count: usize, closed: bool| closed && from == 0 && to == count - 1;
         let share = |round: bool| round && !detail.uv;
         let round_path = share(whole(first, last, self.path.len(), self.path_closed))
             && self.turn(&self.path[0]) <= detail.crease_angle;
@@ -299,7 +300,8 @@ impl Plan {
                 mesh.vertices.push(self.vertex(place, detail));
             }
         }
-        let at = |row: usize, column: usize| VertexIndex(base + (row % rows * columns + column % columns) as u32);
+        let at =
+            |row: usize, column: usize| VertexIndex(base + (row % rows * columns + column % columns) as u32);
         for row in 0..last - first {
             for column in 0..right - left {
                 let corners =
