@@ -14,6 +14,8 @@ mod extrude;
 mod revolve;
 mod ring;
 mod sweep;
+#[cfg(test)]
+mod tests;
 
 pub use crossing::{Crossing, first_crossing};
 pub use cuboid::cuboid;

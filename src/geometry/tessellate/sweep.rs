@@ -13,7 +13,7 @@ use super::discretize::{Density, Station, arc_lengths, discretize};
 use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessellation};
 use crate::geometry::curve::{AnyCurve, Curve, Domain, Jet, Side};
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
-use crate::geometry::number::atan2;
+use crate::geometry::number::{atan2, ln, pow};
 use crate::geometry::surface::{Section, SweptSurface};
 
 /// A section carried along a path by rotation-minimizing frames.
@@ -42,15 +42,24 @@ pub fn sweep(shape: &Sweep, detail: &Detail) -> Result<Tessellation, TessellateE
     let SurfaceDensity::Tolerance(tolerance) = detail.density else {
         return Plan::new(shape, &surface, detail, 0.0)?.build(shape, detail);
     };
+    // What a row leaves out falls with the square of its length, or where a flat side twists with the length
+    // itself: the exponent is taken from the last two trials.
     let mut aim = tolerance / 2.0;
+    let mut exponent = 1.0;
     let mut plan = Plan::new(shape, &surface, detail, aim)?;
-    for _ in 0..6 {
+    for _ in 0..10 {
         let bound = plan.deviation.bound;
         if bound <= tolerance {
             break;
         }
-        aim *= (tolerance / bound).min(0.95) * 0.98;
-        plan = Plan::new(shape, &surface, detail, aim)?;
+        let next = aim * pow(0.97 * tolerance / bound, 1.0 / exponent);
+        let finer = Plan::new(shape, &surface, detail, next)?;
+        // Where a mitre leaves no room for rows, more rows elsewhere do not help.
+        if finer.deviation.bound > 0.98 * bound {
+            break;
+        }
+        exponent = (ln(finer.deviation.bound / bound) / ln(next / aim)).clamp(0.25, 1.0);
+        (plan, aim) = (finer, next);
     }
     plan.build(shape, detail)
 }
@@ -153,6 +162,7 @@ impl Plan {
                 discretize(&traced, along, limit)?
             }
         };
+        let path = clear_of_corners(surface, path, &profile);
         let needed = 2 * (profile.len() as u64 - 1) * (path.len() as u64 - 1);
         if needed > limit {
             return Err(TessellateError::TooMany { needed, limit });
@@ -389,6 +399,38 @@ fn sections(surface: &SweptSurface, path: &[Station]) -> Vec<(Section, Section)>
         all[last].1 = all[0].1;
     }
     all
+}
+
+/// Leaves out stations whose section would reach across the bisecting plane of a corner: there the mitre
+/// already stands, and rows behind it would fold the surface.
+fn clear_of_corners(surface: &SweptSurface, path: Vec<Station>, profile: &[Station]) -> Vec<Station> {
+    let corner = |station: &Station| station.before.dot(station.after) < 1.0 - 1e-12;
+    let closed = surface.path.is_closed();
+    let ends = path.len() - 1;
+    let corners: Vec<(usize, DVec3, DVec3)> = (0..path.len())
+        .filter(|row| corner(&path[*row]) && (closed || (*row > 0 && *row < ends)))
+        .map(|row| (row, path[row].point, (path[row].before + path[row].after).normalize_or_zero()))
+        .collect();
+    if corners.is_empty() {
+        return path;
+    }
+    let clear = |row: usize, station: &Station| {
+        let near = |place: usize| corners.get(place).into_iter();
+        let next = corners.partition_point(|(corner, ..)| *corner <= row);
+        let section = surface.section(station.t, Side::After);
+        let reaches = |(_, origin, normal): &(usize, DVec3, DVec3), sign: f64| {
+            let across = |point: &Station| {
+                (section.point(point.point.x, point.point.y) - *origin).dot(*normal) * sign <= 0.0
+            };
+            profile.iter().any(across)
+        };
+        let before = near(next.wrapping_sub(1)).any(|corner| reaches(corner, 1.0));
+        !before && !near(next).any(|corner| reaches(corner, -1.0))
+    };
+    let keep: Vec<bool> = (0..path.len())
+        .map(|row| row == 0 || row == ends || corner(&path[row]) || clear(row, &path[row]))
+        .collect();
+    path.into_iter().zip(keep).filter(|(_, keep)| *keep).map(|(station, _)| station).collect()
 }
 
 /// Runs of stations between hard joints.
