@@ -1,2 +1,241 @@
 //! The pipeline, one line a stage.
-pub fn compile() {}
+
+use crate::build::{self, Built};
+use crate::geometry::tessellate::{Evidence, TessellateError};
+use crate::language::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::language::document::Document;
+use crate::language::source::{Files, Span};
+use crate::language::spec::{Assertion, Demand, Expected, Spec};
+use crate::model::{Model, ShapeHandle};
+use crate::realize::{self, RealizeError, Realized};
+use crate::report::{About, Check, Report};
+use crate::scene::SceneError;
+use crate::{gltf, optimize, report, scene};
+
+/// What to compile of a document, and how.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// The variant; none is the document itself.
+    pub variant: Option<String>,
+    /// Parameters and what they shall be.
+    pub overrides: Vec<(String, String)>,
+    /// Name of the asset where the document states none; the output is this name and `.glb`.
+    pub name: String,
+    /// The document's path from the project root, for the report.
+    pub path: String,
+    /// Leave the report out. Assertions then cannot be checked, and are not.
+    pub no_report: bool,
+    /// Measure the deviation by dense sampling.
+    pub measure: bool,
+}
+
+/// One asset.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    /// The `.glb` file.
+    pub bytes: Vec<u8>,
+    /// Name of the file.
+    pub file: String,
+    /// What is known of it.
+    pub report: Option<Report>,
+    /// What a person should know though nothing is wrong.
+    pub warnings: Diagnostics,
+}
+
+/// Compiles one asset of a document.
+///
+/// # Errors
+/// Everything that is wrong with the document, or the assertions that do not hold.
+pub fn compile(document: &Document, files: &dyn Files, options: &Options) -> Result<Compiled, Diagnostics> {
+    let fail = |list: Vec<Diagnostic>| document.diagnostics(list);
+    let (spec, mut warnings) = document.spec(options.variant.as_deref(), &options.overrides)?;
+    let built = build::model(&spec, &options.name, files).map_err(fail)?;
+    warnings.extend(built.warnings.iter().cloned());
+    let realized = realize::scene(&built.model, &realize::Options::default());
+    let Realized { mut scene, shapes, notes } = realized.map_err(|errors| fail(refusals(&built, errors)))?;
+    warnings.extend(notes.iter().map(|(shape, note)| noticed(&built, *shape, note)));
+    warnings.extend(beyond_tolerance(&scene, &shapes, &built));
+    optimize::run(&mut scene);
+    let checked = scene::check::check(&scene).map_err(|error| fail(vec![unwritable(&error, &built)]))?;
+    let file = file_name(options);
+    let written = gltf::write(checked, options.measure);
+    // From here on the bytes speak for themselves; the scene's memory is needed no more.
+    drop(scene);
+    let written = written.map_err(|error| {
+        fail(vec![Diagnostic::error(Code::LimitPassed, error.to_string()).at(Span::NONE, "")])
+    })?;
+    let report = if options.no_report {
+        None
+    } else {
+        let about = About {
+            spec: &options.path,
+            variant: options.variant.as_deref(),
+            file: &file,
+            measure: options.measure,
+        };
+        Some(measured(&written, &built.model, &shapes, &about, &spec).map_err(fail)?)
+    };
+    Ok(Compiled { bytes: written.bytes, file, report, warnings: document.diagnostics(warnings) })
+}
+
+/// Builds the exact model of a document, for `sample`.
+///
+/// # Errors
+/// Everything that is wrong with the document.
+pub fn model(document: &Document, files: &dyn Files, options: &Options) -> Result<Model, Diagnostics> {
+    let (spec, _) = document.spec(options.variant.as_deref(), &options.overrides)?;
+    let built = build::model(&spec, &options.name, files).map_err(|list| document.diagnostics(list))?;
+    Ok(built.model)
+}
+
+fn file_name(options: &Options) -> String {
+    match &options.variant {
+        Some(variant) => format!("{}.{variant}.glb", options.name),
+        None => format!("{}.glb", options.name),
+    }
+}
+
+fn place(built: &Built, shape: ShapeHandle) -> Span {
+    built.places.get(shape.0 as usize).copied().unwrap_or(Span::NONE)
+}
+
+fn refusals(built: &Built, errors: Vec<(ShapeHandle, RealizeError)>) -> Vec<Diagnostic> {
+    errors.into_iter().map(|(shape, error)| refusal(built, shape, &error)).collect()
+}
+
+fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnostic {
+    let name = &built.model.shape(shape).name;
+    let (code, help) = match error {
+        RealizeError::Limit { .. } | RealizeError::Tessellate(TessellateError::TooMany { .. }) => (
+            Code::LimitPassed,
+            "write a coarser `tolerance`, fewer `segments`, or fewer copies; `[limits]` can only be lowered here",
+        ),
+        RealizeError::Tessellate(TessellateError::Cap { .. }) => (
+            Code::BadHole,
+            "holes must lie inside the outline and apart from each other; a finer `tolerance` keeps them apart",
+        ),
+        RealizeError::Tessellate(TessellateError::NoArea) => {
+            (Code::NoArea, "a finer `tolerance` or more `segments` keep the outline open")
+        }
+        RealizeError::Polygons(_) => (Code::BadMesh, "check the indices of the faces"),
+    };
+    Diagnostic::error(code, format!("shape `{name}` cannot be made: {error}"))
+        .at(place(built, shape), "this shape")
+        .help(help)
+}
+
+fn noticed(built: &Built, shape: ShapeHandle, note: &str) -> Diagnostic {
+    let name = &built.model.shape(shape).name;
+    Diagnostic::warning(Code::ImportNote, format!("shape `{name}`: {note}")).at(place(built, shape), "this shape")
+}
+
+/// Shapes whose bound could not be brought under their tolerance.
+fn beyond_tolerance(scene: &scene::Scene, shapes: &[ShapeHandle], built: &Built) -> Vec<Diagnostic> {
+    let beyond = |(geometry, shape): (&scene::Geometry, &ShapeHandle)| {
+        let tolerance = geometry.tolerance?;
+        let bound = geometry.deviation.bound;
+        (bound > tolerance * (1.0 + 1e-9)).then(|| {
+            let sampled = if geometry.deviation.evidence == Evidence::Sampled { " (sampled)" } else { "" };
+            let message = format!(
+                "shape `{}` lies up to {bound:.3e} m from the true surface{sampled}, more than its tolerance of {tolerance:.3e} m",
+                geometry.name
+            );
+            Diagnostic::warning(Code::TightBend, message)
+                .at(place(built, *shape), "this shape")
+                .note("beside a sharp corner of a path a section that twists or bends has no room for more rows")
+        })
+    };
+    scene.geometries.iter().zip(shapes).filter_map(beyond).collect()
+}
+
+fn unwritable(error: &SceneError, built: &Built) -> Diagnostic {
+    let named = |name: &String| built.model.shapes.iter().position(|shape| shape.name == *name);
+    let (code, shape) = match error {
+        SceneError::NoTriangle(name) => (Code::NothingToShow, named(name)),
+        SceneError::TooLarge(name) => (Code::LimitPassed, named(name)),
+        SceneError::NotFinite(name) | SceneError::NotUnit(name, _) => (Code::NotFinite, named(name)),
+        _ => (Code::NothingToShow, None),
+    };
+    let span = shape.and_then(|index| built.places.get(index).copied()).unwrap_or(Span::NONE);
+    Diagnostic::error(code, error.to_string()).at(span, "this shape")
+}
+
+fn measured(
+    written: &gltf::Written,
+    model: &Model,
+    shapes: &[ShapeHandle],
+    about: &About<'_>,
+    spec: &Spec,
+) -> Result<Report, Vec<Diagnostic>> {
+    let report = report::measure(written, model, shapes, about);
+    let mut report = report.map_err(|error| {
+        let message = format!("the written file cannot be read back: {error}");
+        vec![
+            Diagnostic::error(Code::NothingToShow, message)
+                .at(Span::NONE, "")
+                .help("this is a bug of Kiln; please report it with the document"),
+        ]
+    })?;
+    let mut held = Vec::new();
+    let mut failed = Vec::new();
+    for assertion in &spec.asserts {
+        match assert(&report, assertion) {
+            Ok(check) => held.push(check),
+            Err(diagnostic) => failed.push(*diagnostic),
+        }
+    }
+    report.assertions = held;
+    if failed.is_empty() { Ok(report) } else { Err(failed) }
+}
+
+fn assert(report: &Report, assertion: &Assertion) -> Result<Check, Box<Diagnostic>> {
+    let path = &assertion.path.value;
+    let found = report.fact(path).map_err(|fault| {
+        let message = format!("the report has no `{}`, asked for by `{path}`", fault.missing);
+        let known = fault.known.iter().map(String::as_str);
+        let near = crate::language::spec::closest(&fault.missing, known).map(str::to_owned);
+        let mut report = Diagnostic::error(Code::UnknownFact, message).at(assertion.path.span, "no such fact");
+        if !fault.known.is_empty() {
+            report = report.note(format!("there is: {}", fault.known.join(", ")));
+        }
+        if let Some(near) = near {
+            report = report.help(format!("did you mean `{near}`?"));
+        }
+        Box::new(report)
+    })?;
+    let demand = demanded(&assertion.demand);
+    if holds(&assertion.demand, &found) {
+        return Ok(Check { path: path.clone(), found });
+    }
+    let message = format!("assertion failed: `{path}` is {found}, not {demand}");
+    Err(Box::new(Diagnostic::error(Code::AssertionFailed, message).at(assertion.span, format!("found {found}"))))
+}
+
+fn holds(demand: &Demand, found: &serde_json::Value) -> bool {
+    match demand {
+        Demand::Equals(Expected::Number(number)) => found.as_f64() == Some(*number),
+        Demand::Equals(Expected::Boolean(truth)) => found.as_bool() == Some(*truth),
+        Demand::Equals(Expected::Text(text)) => found.as_str() == Some(text),
+        Demand::Bounds { at_most, at_least, equals, tolerance } => found.as_f64().is_some_and(|found| {
+            at_most.is_none_or(|most| found <= most)
+                && at_least.is_none_or(|least| found >= least)
+                && equals.is_none_or(|number| (found - number).abs() <= *tolerance)
+        }),
+    }
+}
+
+fn demanded(demand: &Demand) -> String {
+    match demand {
+        Demand::Equals(Expected::Number(number)) => number.to_string(),
+        Demand::Equals(Expected::Boolean(truth)) => truth.to_string(),
+        Demand::Equals(Expected::Text(text)) => format!("\"{text}\""),
+        Demand::Bounds { at_most, at_least, equals, tolerance } => {
+            let bounds = [
+                at_least.map(|least| format!("at least {least}")),
+                at_most.map(|most| format!("at most {most}")),
+                equals.map(|number| format!("{number} give or take {tolerance}")),
+            ];
+            bounds.into_iter().flatten().collect::<Vec<_>>().join(" and ")
+        }
+    }
+}

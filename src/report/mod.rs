@@ -1,1 +1,303 @@
-//! The report stage.
+//! Facts about the written bytes, held against the model.
+//!
+//! Promise: every number is measured on the bytes that were written, read back; only the bound on the
+//! deviation comes from the tessellator, with what rounding to single precision adds. Keys are the same from
+//! run to run, and no number depends on the machine or on the number of threads.
+
+mod assertion;
+mod deviation;
+pub mod facts;
+mod polygons;
+
+pub use assertion::{Check, Fault};
+pub use deviation::measure_deviation;
+
+use indexmap::IndexMap;
+use serde::Serialize;
+
+use crate::geometry::mesh::polygon_facts::PolygonFacts;
+use crate::geometry::number::{Bounds, single_rounding};
+use crate::geometry::tessellate::Evidence;
+use crate::gltf::{Read, ReadError, Written, WrittenGeometry, read};
+use crate::model::{Model, ShapeHandle};
+use facts::MeshFacts;
+
+/// What is known of an asset.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Report {
+    /// Version of Kiln.
+    pub kiln: &'static str,
+    /// Name of the asset.
+    pub asset: String,
+    /// The document, from the project root.
+    pub spec: String,
+    /// The variant of the document.
+    pub variant: Option<String>,
+    /// Output profile.
+    pub profile: &'static str,
+    /// The file.
+    pub file: FileFacts,
+    /// Sums over the file.
+    pub totals: Totals,
+    /// Each shape, by the name of its mesh.
+    pub shapes: IndexMap<String, ShapeFacts>,
+    /// Each node, in the order of the file.
+    pub nodes: Vec<NodeFacts>,
+    /// Each assertion of the document that holds.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub assertions: Vec<Check>,
+}
+
+/// The written file.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct FileFacts {
+    /// Its name.
+    pub name: String,
+    /// Its length.
+    pub bytes: u64,
+    /// Its BLAKE3 hash in hexadecimal digits.
+    pub blake3: String,
+}
+
+/// Sums over the file.
+#[derive(Clone, Debug, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Totals {
+    /// Meshes.
+    pub meshes: usize,
+    /// Primitives of all meshes.
+    pub primitives: usize,
+    /// Triangles of all meshes.
+    pub triangles: u64,
+    /// Vertices of all meshes.
+    pub vertices: u64,
+    /// Materials.
+    pub materials: usize,
+    /// Images.
+    pub images: usize,
+    /// Nodes.
+    pub nodes: usize,
+    /// Primitives of all nodes: what a plain renderer draws.
+    pub draw_calls: u64,
+    /// Triangles of all nodes.
+    pub drawn_triangles: u64,
+    /// Box of all nodes in the scene.
+    pub bounds: Extent,
+}
+
+/// A box.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Extent {
+    /// Least corner.
+    pub min: [f64; 3],
+    /// Greatest corner.
+    pub max: [f64; 3],
+}
+
+/// What is known of a shape: measured on its mesh.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct ShapeFacts {
+    /// Primitives of its mesh.
+    pub primitives: usize,
+    /// What is measured.
+    #[serde(flatten)]
+    pub facts: MeshFacts,
+    /// Distance from the exact shape.
+    pub deviation: DeviationFacts,
+    /// The polygons it was made from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub polygons: Option<PolygonFacts>,
+}
+
+/// Distance between written triangles and exact shape.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct DeviationFacts {
+    /// What was asked for, metres; none for a fixed grid and for polygons.
+    pub tolerance: Option<f64>,
+    /// No point is further away, metres, rounding of positions included.
+    pub bound: f64,
+    /// How the bound is known.
+    pub kind: Kind,
+    /// The greatest distance found by dense sampling, metres, when that was asked for.
+    pub measured: Option<f64>,
+}
+
+/// How a bound is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// The triangles are the shape, but for rounding.
+    Exact,
+    /// Proved.
+    Proved,
+    /// The greatest of dense samples, with a margin.
+    Sampled,
+}
+
+/// A node of the file.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct NodeFacts {
+    /// Its name.
+    pub name: String,
+    /// Its parent.
+    pub parent: Option<String>,
+    /// The mesh it shows.
+    pub mesh: Option<String>,
+    /// Its place in the scene, column by column.
+    pub matrix: [f64; 16],
+}
+
+/// What a report says beyond the bytes.
+#[derive(Clone, Debug)]
+pub struct About<'a> {
+    /// The document, from the project root.
+    pub spec: &'a str,
+    /// The variant of the document.
+    pub variant: Option<&'a str>,
+    /// Name of the written file.
+    pub file: &'a str,
+    /// Whether the deviation is measured by dense sampling.
+    pub measure: bool,
+}
+
+/// Measures the bytes of a file.
+///
+/// # Errors
+/// When the bytes cannot be read back, which is a bug of the writer.
+pub fn measure(
+    written: &Written,
+    model: &Model,
+    shapes: &[ShapeHandle],
+    about: &About<'_>,
+) -> Result<Report, ReadError> {
+    let file = read(&written.bytes)?;
+    let mut facts = IndexMap::new();
+    for (known, handle) in written.geometries.iter().zip(shapes) {
+        let measured = about.measure.then(|| measure_deviation(&file.geometries[known.mesh], known, model, *handle));
+        facts.insert(known.name.clone(), shape_facts(&file, known, (model, *handle), measured));
+    }
+    let nodes = nodes(&file);
+    Ok(Report {
+        kiln: env!("CARGO_PKG_VERSION"),
+        asset: model.name.clone(),
+        spec: about.spec.to_owned(),
+        variant: about.variant.map(str::to_owned),
+        profile: "core",
+        file: FileFacts {
+            name: about.file.to_owned(),
+            bytes: written.bytes.len() as u64,
+            blake3: blake3::hash(&written.bytes).to_hex().to_string(),
+        },
+        totals: totals(&file, &facts, written, &nodes),
+        shapes: facts,
+        nodes,
+        assertions: Vec::new(),
+    })
+}
+
+fn shape_facts(
+    file: &Read,
+    known: &WrittenGeometry,
+    (model, handle): (&Model, ShapeHandle),
+    measured: Option<f64>,
+) -> ShapeFacts {
+    let geometry = &file.geometries[known.mesh];
+    let facts = facts::measure(&geometry.positions, &geometry.indices);
+    let corner = |corner: [f64; 3]| corner.iter().fold(0.0_f64, |reach, part| reach.max(part.abs()));
+    let reach = corner(facts.bounds.min).max(corner(facts.bounds.max));
+    ShapeFacts {
+        primitives: geometry.parts.len(),
+        deviation: DeviationFacts {
+            tolerance: known.tolerance,
+            bound: known.deviation.bound + single_rounding(reach),
+            kind: match known.deviation.evidence {
+                Evidence::Exact => Kind::Exact,
+                Evidence::Proved => Kind::Proved,
+                Evidence::Sampled => Kind::Sampled,
+            },
+            measured,
+        },
+        polygons: polygons::polygon_facts(model, handle),
+        facts,
+    }
+}
+
+fn nodes(file: &Read) -> Vec<NodeFacts> {
+    let all = &file.root.nodes;
+    let mut parents = vec![None; all.len()];
+    for (index, node) in all.iter().enumerate() {
+        for child in node.children.iter().flatten() {
+            parents[child.value()] = Some(index);
+        }
+    }
+    let name = |index: usize| all[index].name.clone().unwrap_or_default();
+    let facts = |index: usize| {
+        let mut matrix = local(&all[index]);
+        let mut ancestor = parents[index];
+        while let Some(parent) = ancestor {
+            matrix = local(&all[parent]) * matrix;
+            ancestor = parents[parent];
+        }
+        NodeFacts {
+            name: name(index),
+            parent: parents[index].map(name),
+            mesh: all[index].mesh.and_then(|mesh| file.root.meshes[mesh.value()].name.clone()),
+            matrix: matrix.to_cols_array(),
+        }
+    };
+    (0..all.len()).map(facts).collect()
+}
+
+fn local(node: &gltf::json::Node) -> glam::DMat4 {
+    let vector = |value: Option<[f32; 3]>, rest: f32| {
+        glam::Vec3::from_array(value.unwrap_or([rest; 3])).as_dvec3()
+    };
+    let rotation = node.rotation.map_or([0.0, 0.0, 0.0, 1.0], |rotation| rotation.0);
+    glam::DMat4::from_scale_rotation_translation(
+        vector(node.scale, 1.0),
+        glam::Quat::from_array(rotation).as_dquat().normalize(),
+        vector(node.translation, 0.0),
+    )
+}
+
+fn totals(file: &Read, shapes: &IndexMap<String, ShapeFacts>, written: &Written, nodes: &[NodeFacts]) -> Totals {
+    let mut totals = Totals {
+        meshes: file.root.meshes.len(),
+        materials: file.root.materials.len(),
+        images: file.root.images.len(),
+        nodes: nodes.len(),
+        ..Totals::default()
+    };
+    for facts in shapes.values() {
+        totals.primitives += facts.primitives;
+        totals.triangles += facts.facts.triangles;
+        totals.vertices += facts.facts.vertices;
+    }
+    let mut bounds = Bounds::EMPTY;
+    for (node, facts) in file.root.nodes.iter().zip(nodes) {
+        let Some(mesh) = node.mesh else { continue };
+        let geometry = &file.geometries[mesh.value()];
+        totals.draw_calls += geometry.parts.len() as u64;
+        totals.drawn_triangles += geometry.indices.len() as u64 / 3;
+        let matrix = glam::DMat4::from_cols_array(&facts.matrix);
+        let plain = matrix == glam::DMat4::IDENTITY;
+        let known = written.geometries.iter().find(|known| known.mesh == mesh.value());
+        bounds = match known.and_then(|known| shapes.get(&known.name)).filter(|_| plain) {
+            Some(facts) => bounds.union(Bounds {
+                min: facts.facts.bounds.min.into(),
+                max: facts.facts.bounds.max.into(),
+            }),
+            None => geometry.positions.iter().fold(bounds, |bounds, position| {
+                let place = glam::Vec3::from_array(*position).as_dvec3();
+                bounds.with_point(matrix.transform_point3(place))
+            }),
+        };
+    }
+    totals.bounds = Extent { min: bounds.min.to_array(), max: bounds.max.to_array() };
+    totals
+}

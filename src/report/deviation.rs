@@ -1,0 +1,60 @@
+//! The deviation of written triangles, measured by dense sampling.
+
+use glam::DVec3;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+
+use crate::geometry::mesh::Anchor;
+use crate::gltf::{Geometry, WrittenGeometry};
+use crate::model::{Model, ShapeHandle};
+use crate::realize::{Sources, Window, sources};
+
+/// Places in a triangle, as weights of its corners: the corners, middles of the sides and of the triangle, and
+/// six more between them.
+const SAMPLES: [[f64; 3]; 13] = [
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [0.5, 0.5, 0.0],
+    [0.0, 0.5, 0.5],
+    [0.5, 0.0, 0.5],
+    [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
+    [0.75, 0.25, 0.0],
+    [0.25, 0.75, 0.0],
+    [0.0, 0.75, 0.25],
+    [0.0, 0.25, 0.75],
+    [0.25, 0.0, 0.75],
+    [0.75, 0.0, 0.25],
+];
+
+/// The greatest distance from samples of the written triangles to the exact surface, metres. Each sample looks
+/// for its nearest point in the range of parameters that its triangle's corners span, so the result is local:
+/// a sheet that lies near by does not hide a gap.
+#[must_use]
+pub fn measure_deviation(geometry: &Geometry, known: &WrittenGeometry, model: &Model, handle: ShapeHandle) -> f64 {
+    let sources = sources(model, handle);
+    if !sources.curved() || known.anchors.len() != geometry.positions.len() {
+        return 0.0;
+    }
+    let triangles: Vec<&[u32]> = geometry.indices.chunks_exact(3).collect();
+    // The greatest of a set is the same in any order, so threads do not matter.
+    triangles
+        .par_iter()
+        .with_min_len(256)
+        .map(|triangle| of_triangle(triangle, geometry, &known.anchors, &sources))
+        .reduce(|| 0.0, f64::max)
+}
+
+fn of_triangle(triangle: &[u32], geometry: &Geometry, anchors: &[Anchor], sources: &Sources) -> f64 {
+    let corners = [0, 1, 2].map(|corner| anchors[triangle[corner] as usize]);
+    let Some(source) = sources.get(corners[0].source) else { return 0.0 };
+    let least = |of: fn(&Anchor) -> f64| corners.iter().map(of).fold(f64::INFINITY, f64::min);
+    let most = |of: fn(&Anchor) -> f64| corners.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+    let window =
+        Window { low: (least(|a| a.u), least(|a| a.v)), high: (most(|a| a.u), most(|a| a.v)) };
+    let places = [0, 1, 2].map(|corner| {
+        let [x, y, z] = geometry.positions[triangle[corner] as usize].map(f64::from);
+        DVec3::new(x, y, z)
+    });
+    let at = |weights: &[f64; 3]| places[0] * weights[0] + places[1] * weights[1] + places[2] * weights[2];
+    SAMPLES.iter().map(|weights| source.distance(at(weights), &window)).fold(0.0, f64::max)
+}
