@@ -1,1 +1,60 @@
-//! The import stage.
+//! The import stage: bytes of other programs' files into polygon meshes and image facts.
+//!
+//! Promise: no input makes a reader panic, hang, or take memory out of proportion to its size; what is refused is
+//! refused with the line, the value and the limit; what is passed over is told in a [`Note`]. Readers open nothing
+//! themselves: other files come through a door that the caller passes in.
+
+mod error;
+mod foreign;
+pub mod image;
+pub mod obj;
+pub mod stl;
+
+use crate::geometry::mesh::PolygonMesh;
+
+pub use error::ImportError;
+pub use foreign::{Foreign, recognize};
+
+/// What to read from a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ImportOptions {
+    /// Only the faces of this group, object or solid.
+    pub group: Option<String>,
+    /// Join points that are within this distance, in the units of the file. STL joins equal points in any case.
+    pub weld: Option<f64>,
+}
+
+/// What a file held, in its own units and axes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Imported {
+    /// The faces; valid in the sense of [`PolygonMesh::validate`].
+    pub mesh: PolygonMesh,
+    /// What the materials of `mesh` look like, as far as the file says; in the order of its names.
+    pub materials: Vec<MaterialLook>,
+    /// Names of groups, objects or solids in the order of the file, also those not read.
+    pub groups: Vec<String>,
+    /// What was passed over or put right.
+    pub notes: Vec<Note>,
+}
+
+/// Something passed over or put right.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// Line of the file, counted from 1; `None` when it concerns the whole file.
+    pub line: Option<u32>,
+    /// What happened, in lower case without a full stop.
+    pub message: String,
+}
+
+/// What a material library says of a material.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MaterialLook {
+    /// Its name.
+    pub name: String,
+    /// `Kd`: diffuse color, linear, 0 to 1.
+    pub color: Option<[f64; 3]>,
+    /// `d`, or 1 - `Tr`: 1 is opaque.
+    pub opacity: Option<f64>,
+    /// `map_Kd`: path of the color texture as written.
+    pub texture: Option<String>,
+}

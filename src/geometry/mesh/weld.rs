@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::geometry::mesh::index;
+use crate::geometry::mesh::{PointIndex, PolygonMesh, index};
 
 /// Points that remain and, for each point given, which of them it became.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,6 +15,18 @@ pub struct Welded {
     pub points: Vec<DVec3>,
     /// For each point given, an index into `points`.
     pub map: Vec<u32>,
+}
+
+impl PolygonMesh {
+    /// Joins points within `tolerance` metres of each other; see [`weld_near`]. Faces keep their corners, so some may
+    /// become degenerate.
+    pub fn weld(&mut self, tolerance: f64) {
+        let welded = weld_near(&self.points, tolerance);
+        self.points = welded.points;
+        for corner in &mut self.corners {
+            *corner = PointIndex(welded.map[corner.subscript()]);
+        }
+    }
 }
 
 /// Joins points with equal coordinates (0 and -0 are equal). Linear.

@@ -1,0 +1,130 @@
+//! Wavefront OBJ: polygons with UVs, normals, smoothing groups and materials.
+//!
+//! The text passes through [`lines`] first, which checks every line, keeps what the parser drops (smoothing groups,
+//! group names, which corners have attributes) and hands on a clean text of vertices and faces in one object; `tobj`
+//! parses that. Faces stay polygons: their triangulation is `geometry::mesh`'s.
+
+mod lines;
+mod mtl;
+
+use glam::{DVec2, DVec3};
+
+use super::{ImportError, ImportOptions, Imported, MaterialLook, Note};
+use crate::geometry::mesh::polygon::{Face, NONE};
+use crate::geometry::mesh::{PointIndex, PolygonMesh};
+use lines::{FaceRecord, Scan};
+
+/// Reads an OBJ file. `open` gives the bytes of another file by the path written in the file, relative to it;
+/// paths that are absolute or lead upwards are never asked for.
+///
+/// Points that no face uses are left out. Texture coordinates are turned to grow downwards. Time and memory are
+/// linear in the length of the file.
+///
+/// # Errors
+/// The first fault in the file, with its line.
+pub fn read(
+    bytes: &[u8],
+    options: &ImportOptions,
+    open: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+) -> Result<Imported, ImportError> {
+    if let Some(foreign) = super::recognize(bytes) {
+        return Err(ImportError::Foreign(foreign));
+    }
+    let scan = Scan::of(bytes, options.group.as_deref())?;
+    let parsed = parse(&scan)?;
+    let mut mesh = mesh_of(&parsed, &scan);
+    if let Some(tolerance) = options.weld {
+        mesh.weld(tolerance);
+    }
+    let mut notes = scan.notes;
+    let materials = looks_of(&scan.libraries, &mesh.materials, open, &mut notes);
+    notes.sort_by_key(|note| note.line);
+    Ok(Imported { mesh, materials, groups: scan.groups, notes })
+}
+
+/// The clean text through `tobj`: one object, polygons kept.
+fn parse(scan: &Scan) -> Result<tobj::Mesh, ImportError> {
+    let options = tobj::LoadOptions::default();
+    let no_library = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
+    let (models, _) = tobj::load_obj_buf(&mut scan.clean.as_slice(), &options, no_library)
+        .map_err(|error| ImportError::Refused { reason: error.to_string() })?;
+    let corners: usize = scan.faces.iter().map(|face| face.corners as usize).sum();
+    let mesh = models.into_iter().map(|model| model.mesh).find(|mesh| !mesh.indices.is_empty());
+    let mesh = mesh.filter(|mesh| mesh.indices.len() == corners);
+    mesh.ok_or_else(|| ImportError::Refused { reason: "faces are missing".to_owned() }).and_then(|mesh| {
+        let spoiled = mesh.positions.chunks_exact(3).find(|position| !position[0].is_finite());
+        spoiled.map_or(Ok(()), |position| Err(scan.fault(position[1])))?;
+        Ok(mesh)
+    })
+}
+
+fn mesh_of(parsed: &tobj::Mesh, scan: &Scan) -> PolygonMesh {
+    let triples = |flat: &[f64]| flat.chunks_exact(3).map(DVec3::from_slice).collect::<Vec<_>>();
+    let keep = |indices: &[u32], has: &[bool]| {
+        if has.iter().any(|&has| has) && indices.len() == has.len() {
+            indices.iter().zip(has).map(|(&index, &has)| if has { index } else { NONE }).collect()
+        } else {
+            Vec::new()
+        }
+    };
+    let mut mesh = PolygonMesh {
+        points: triples(&parsed.positions),
+        corners: parsed.indices.iter().copied().map(PointIndex).collect(),
+        uvs: parsed.texcoords.chunks_exact(2).map(|uv| DVec2::new(uv[0], 1.0 - uv[1])).collect(),
+        corner_uvs: keep(&parsed.texcoord_indices, &scan.has_uv),
+        normals: triples(&parsed.normals),
+        corner_normals: keep(&parsed.normal_indices, &scan.has_normal),
+        materials: scan.materials.clone(),
+        has_smoothing: scan.has_smoothing,
+        ..PolygonMesh::default()
+    };
+    let mut end = 0;
+    for (loops_end, &FaceRecord { corners, material, smoothing }) in (1..).zip(&scan.faces) {
+        end += corners;
+        mesh.loop_ends.push(end);
+        mesh.faces.push(Face { loops_end, material, smoothing });
+    }
+    mesh
+}
+
+/// What the libraries say of the materials that faces use.
+fn looks_of(
+    libraries: &[(u32, String)],
+    used: &[String],
+    open: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+    notes: &mut Vec<Note>,
+) -> Vec<MaterialLook> {
+    let mut known = Vec::new();
+    for (line, path) in libraries {
+        let Some(inside) = inside_folder(path) else {
+            let message =
+                format!("material library `{path}` lies outside the folder of the file; not opened");
+            notes.push(Note { line: Some(*line), message });
+            continue;
+        };
+        match open(&inside) {
+            Some(bytes) => known.extend(mtl::read(&bytes)),
+            None => {
+                let message = format!("material library `{path}` not found");
+                notes.push(Note { line: Some(*line), message });
+            }
+        }
+    }
+    let look = |name: &String| {
+        let found = known.iter().find(|look: &&MaterialLook| look.name == *name).cloned();
+        found.unwrap_or_else(|| MaterialLook { name: name.clone(), ..MaterialLook::default() })
+    };
+    used.iter().map(look).collect()
+}
+
+/// A relative path with forward slashes that never leads upwards, or `None`.
+fn inside_folder(path: &str) -> Option<String> {
+    let path = path.replace('\\', "/");
+    let fits = |part: &str| !part.is_empty() && part != ".." && !part.contains([':', '\0']);
+    let inside = !path.starts_with('/') && path.split('/').all(fits);
+    let parts: Vec<&str> = path.split('/').filter(|&part| part != ".").collect();
+    (inside && !parts.is_empty()).then(|| parts.join("/"))
+}
+
+#[cfg(test)]
+mod tests;
