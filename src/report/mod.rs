@@ -1,1 +1,3 @@
 //! The report stage.
+
+pub mod facts;
