@@ -154,8 +154,8 @@ pub enum ImportError {
 impl ImportError {
     /// What to do about it.
     #[must_use]
-    pub fn hint(&self) -> String {
-        match self {
+    pub fn hint(&self) -> Option<String> {
+        let hint = match self {
             Self::Foreign(foreign) => foreign.hint.to_owned(),
             Self::Binary { .. } => {
                 "OBJ files are text; Wavefront's binary form (`.mod`) must be exported again as text OBJ"
@@ -187,7 +187,8 @@ impl ImportError {
             }
             Self::TooMany { .. } => "split the file into parts".to_owned(),
             Self::Refused { .. } => "please report this file as a bug of Kiln".to_owned(),
-        }
+        };
+        Some(hint)
     }
 
     /// The line it stands on, where there is one.

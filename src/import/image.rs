@@ -13,14 +13,14 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 /// Format of a picture that glTF can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum ImageKind {
+pub enum Kind {
     /// PNG.
     Png,
     /// JPEG.
     Jpeg,
 }
 
-impl ImageKind {
+impl Kind {
     /// The MIME type as glTF writes it.
     #[must_use]
     pub fn mime_type(self) -> &'static str {
@@ -35,7 +35,7 @@ impl ImageKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImageFacts {
     /// Its format.
-    pub kind: ImageKind,
+    pub kind: Kind,
     /// Pixels across, at least 1.
     pub width: u32,
     /// Pixels down, at least 1.
@@ -64,10 +64,10 @@ pub enum ImageError {
         limit: u64,
     },
     /// Damaged.
-    #[error("the {} file is damaged: {reason}", match kind { ImageKind::Png => "PNG", ImageKind::Jpeg => "JPEG" })]
+    #[error("the {} file is damaged: {reason}", match kind { Kind::Png => "PNG", Kind::Jpeg => "JPEG" })]
     Damaged {
         /// Its format.
-        kind: ImageKind,
+        kind: Kind,
         /// What the decoder says.
         reason: String,
     },
@@ -82,13 +82,14 @@ pub enum ImageError {
 impl ImageError {
     /// What to do about it.
     #[must_use]
-    pub fn hint(&self) -> String {
-        match self {
-            Self::Format { .. } => "convert it to PNG".to_owned(),
-            Self::TooLarge { .. } => "scale it down, or raise `image-pixels` in [limits]".to_owned(),
-            Self::Damaged { .. } => "save it again from the program that made it".to_owned(),
-            Self::Components { .. } => "convert it from CMYK to RGB".to_owned(),
-        }
+    pub fn hint(&self) -> Option<String> {
+        let hint = match self {
+            Self::Format { .. } => "convert it to PNG",
+            Self::TooLarge { .. } => "scale it down, or raise `image-pixels` in [limits]",
+            Self::Damaged { .. } => "save it again from the program that made it",
+            Self::Components { .. } => "convert it from CMYK to RGB",
+        };
+        Some(hint.to_owned())
     }
 }
 
@@ -112,12 +113,12 @@ const OTHERS: [(&[u8], &str); 9] = [
 ///
 /// # Errors
 /// See [`ImageError`].
-pub fn inspect(bytes: &[u8], pixel_limit: u64) -> Result<ImageFacts, ImageError> {
+pub fn read(bytes: &[u8], pixel_limit: u64) -> Result<ImageFacts, ImageError> {
     if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
-        return inspect_png(bytes, pixel_limit);
+        return read_png(bytes, pixel_limit);
     }
     if bytes.starts_with(b"\xff\xd8\xff") {
-        return inspect_jpeg(bytes, pixel_limit);
+        return read_jpeg(bytes, pixel_limit);
     }
     let known = OTHERS.iter().find(|(magic, _)| bytes.starts_with(magic));
     Err(ImageError::Format {
@@ -133,9 +134,9 @@ fn check_size(width: u32, height: u32, limit: u64) -> Result<(), ImageError> {
     Ok(())
 }
 
-fn inspect_png(bytes: &[u8], pixel_limit: u64) -> Result<ImageFacts, ImageError> {
+fn read_png(bytes: &[u8], pixel_limit: u64) -> Result<ImageFacts, ImageError> {
     let damaged =
-        |error: png::DecodingError| ImageError::Damaged { kind: ImageKind::Png, reason: error.to_string() };
+        |error: png::DecodingError| ImageError::Damaged { kind: Kind::Png, reason: error.to_string() };
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     let header = decoder.read_header_info().map_err(damaged)?;
     let (width, height) = (header.width, header.height);
@@ -146,15 +147,15 @@ fn inspect_png(bytes: &[u8], pixel_limit: u64) -> Result<ImageFacts, ImageError>
         || reader.info().trns.is_some();
     if color == png::ColorType::Indexed && reader.info().palette.is_none() {
         let reason = "it has indexed colors but no palette".to_owned();
-        return Err(ImageError::Damaged { kind: ImageKind::Png, reason });
+        return Err(ImageError::Damaged { kind: Kind::Png, reason });
     }
     while reader.next_interlaced_row().map_err(damaged)?.is_some() {}
     reader.finish().map_err(damaged)?;
-    Ok(ImageFacts { kind: ImageKind::Png, width, height, alpha })
+    Ok(ImageFacts { kind: Kind::Png, width, height, alpha })
 }
 
-fn inspect_jpeg(bytes: &[u8], pixel_limit: u64) -> Result<ImageFacts, ImageError> {
-    let damaged = |reason: String| ImageError::Damaged { kind: ImageKind::Jpeg, reason };
+fn read_jpeg(bytes: &[u8], pixel_limit: u64) -> Result<ImageFacts, ImageError> {
+    let damaged = |reason: String| ImageError::Damaged { kind: Kind::Jpeg, reason };
     let most = usize::from(u16::MAX);
     let options = DecoderOptions::default().set_max_width(most).set_max_height(most);
     let mut decoder = zune_jpeg::JpegDecoder::new_with_options(ZCursor::new(bytes), options);
@@ -173,7 +174,7 @@ fn inspect_jpeg(bytes: &[u8], pixel_limit: u64) -> Result<ImageFacts, ImageError
     if !bytes[scan..].windows(2).any(|pair| pair == b"\xff\xd9") {
         return Err(damaged("it is cut off: its end marker is missing".to_owned()));
     }
-    Ok(ImageFacts { kind: ImageKind::Jpeg, width, height, alpha: false })
+    Ok(ImageFacts { kind: Kind::Jpeg, width, height, alpha: false })
 }
 
 #[cfg(test)]
