@@ -79,7 +79,9 @@ fn differs(value: &Value, expected: &Json) -> Option<String> {
         Data::Integer(read) => kind == "integer" && text.parse() == Ok(*read),
         Data::Float(read) => kind == "float" && same_float(*read, text),
         Data::Boolean(read) => kind == "bool" && text.parse() == Ok(*read),
-        Data::Datetime(read) => (kind.starts_with("date") || kind.starts_with("time")) && same_time(read, text),
+        Data::Datetime(read) => {
+            (kind.starts_with("date") || kind.starts_with("time")) && same_time(read, text)
+        }
         _ => false,
     };
     (!same).then(|| format!("{value:?} instead of {expected}"))

@@ -15,7 +15,8 @@ pub(crate) fn one(diagnostic: &Diagnostic, sources: &SourceMap) -> Json {
     });
     object["code"] = json!(diagnostic.code.text());
     object["message"] = json!(diagnostic.message);
-    object["labels"] = diagnostic.labels.iter().map(|one| label(one.span, &one.text, one.primary, sources)).collect();
+    object["labels"] =
+        diagnostic.labels.iter().map(|one| label(one.span, &one.text, one.primary, sources)).collect();
     object["notes"] = json!(diagnostic.notes);
     object["help"] = json!(diagnostic.help);
     object["suggestion"] = diagnostic.suggestion.as_ref().map_or(Json::Null, |suggestion| {

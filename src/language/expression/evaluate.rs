@@ -100,7 +100,12 @@ impl<'s, S: Scope> Evaluator<'s, S> {
         })
     }
 
-    fn binary(&mut self, operator: Binary, sides: &[Expression; 2], range: &Range<usize>) -> Result<Computed> {
+    fn binary(
+        &mut self,
+        operator: Binary,
+        sides: &[Expression; 2],
+        range: &Range<usize>,
+    ) -> Result<Computed> {
         let [left, right] = sides;
         match operator {
             // The right side is not computed where the left one decides.
@@ -130,7 +135,12 @@ impl<'s, S: Scope> Evaluator<'s, S> {
         Err(Fault::new(Code::ExpressionType, left.range.start..right.range.end, message))
     }
 
-    fn call(&mut self, function: &Function, arguments: &[Expression], range: &Range<usize>) -> Result<Computed> {
+    fn call(
+        &mut self,
+        function: &Function,
+        arguments: &[Expression],
+        range: &Range<usize>,
+    ) -> Result<Computed> {
         match function.call {
             Call::If => {
                 let chosen = if self.truth(&arguments[0])? { 1 } else { 2 };
@@ -147,7 +157,8 @@ impl<'s, S: Scope> Evaluator<'s, S> {
                 finite(all.into_iter().fold(0.0, number::hypot), range)
             }
             _ => {
-                let numbers: Result<Vec<f64>> = arguments.iter().map(|argument| self.number(argument)).collect();
+                let numbers: Result<Vec<f64>> =
+                    arguments.iter().map(|argument| self.number(argument)).collect();
                 numeric(function.call, &numbers?, range)
             }
         }
@@ -172,7 +183,9 @@ fn arithmetic(
     match (operator, &values[0], &values[1]) {
         (_, Computed::Number(left), Computed::Number(right)) => numbers(operator, *left, *right, range),
         (Binary::Add, Computed::Text(left), Computed::Text(right)) => joined(left, right, range),
-        (Binary::Add | Binary::Subtract, Computed::List(left), Computed::List(right)) if left.len() == right.len() => {
+        (Binary::Add | Binary::Subtract, Computed::List(left), Computed::List(right))
+            if left.len() == right.len() =>
+        {
             let pairs = left.iter().zip(right).map(|pair| match pair {
                 (Computed::Number(left), Computed::Number(right)) => numbers(operator, *left, *right, range),
                 _ => Err(no_operation(operator, &values, range)),
@@ -226,7 +239,8 @@ fn numbers(operator: Binary, left: f64, right: f64, range: &Range<usize>) -> Res
     if value.is_finite() {
         return Ok(Computed::Number(value));
     }
-    let message = format!("{} {} {} has no finite value", show_number(left), operator.text(), show_number(right));
+    let message =
+        format!("{} {} {} has no finite value", show_number(left), operator.text(), show_number(right));
     Err(Fault::new(Code::ExpressionValue, range.clone(), message))
 }
 
@@ -242,8 +256,11 @@ fn mix(ends: &[Computed; 2], t: f64, arguments: &[Expression], range: &Range<usi
             mixed.collect::<Result<Vec<_>>>().map(Computed::List)
         }
         _ => {
-            let message = format!("`mix` needs two numbers or two points of one length, found {} and {}",
-                sized(&ends[0]), sized(&ends[1]));
+            let message = format!(
+                "`mix` needs two numbers or two points of one length, found {} and {}",
+                sized(&ends[0]),
+                sized(&ends[1])
+            );
             Err(Fault::new(Code::ExpressionType, range.clone(), message))
         }
     }
@@ -261,7 +278,13 @@ fn numeric(call: Call, all: &[f64], range: &Range<usize>) -> Result<Computed> {
         Call::Atan2 => number::atan2(x, all[1]).to_degrees(),
         Call::Sqrt => x.sqrt(),
         Call::Abs => x.abs(),
-        Call::Sign => if x == 0.0 { 0.0 } else { x.signum() },
+        Call::Sign => {
+            if x == 0.0 {
+                0.0
+            } else {
+                x.signum()
+            }
+        }
         Call::Min => all.iter().copied().fold(x, f64::min),
         Call::Max => all.iter().copied().fold(x, f64::max),
         Call::Floor => x.floor(),
@@ -282,7 +305,8 @@ fn clamp(all: &[f64], range: &Range<usize>) -> Result<Computed> {
     if least <= most {
         return Ok(Computed::Number(x.max(least).min(most)));
     }
-    let message = format!("`clamp` needs its least {} below its most {}", show_number(least), show_number(most));
+    let message =
+        format!("`clamp` needs its least {} below its most {}", show_number(least), show_number(most));
     Err(Fault::new(Code::ExpressionValue, range.clone(), message))
 }
 
@@ -326,6 +350,7 @@ fn mismatch(expected: &str, found: &Computed, place: &Expression) -> Fault {
 }
 
 fn no_operation(operator: Binary, values: &[Computed; 2], range: &Range<usize>) -> Fault {
-    let message = format!("`{}` does not work on {} and {}", operator.text(), sized(&values[0]), sized(&values[1]));
+    let message =
+        format!("`{}` does not work on {} and {}", operator.text(), sized(&values[0]), sized(&values[1]));
     Fault::new(Code::ExpressionType, range.clone(), message)
 }

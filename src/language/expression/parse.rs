@@ -26,7 +26,9 @@ impl Expression {
     fn new(node: Node, range: Range<usize>) -> Self {
         let inner = match &node {
             Node::Number(_) | Node::Boolean(_) | Node::Text(_) | Node::Name(_) => 0,
-            Node::List(items) | Node::Call(_, items) => items.iter().map(|item| item.depth).max().unwrap_or(0),
+            Node::List(items) | Node::Call(_, items) => {
+                items.iter().map(|item| item.depth).max().unwrap_or(0)
+            }
             Node::Negate(inner) | Node::Not(inner) | Node::Part(inner, _) => inner.depth,
             Node::Binary(_, sides) => sides[0].depth.max(sides[1].depth),
         };
@@ -94,7 +96,12 @@ impl Binary {
         match self {
             Self::Or => 1,
             Self::And => 2,
-            Self::Equal | Self::NotEqual | Self::Less | Self::LessOrEqual | Self::Greater | Self::GreaterOrEqual => 3,
+            Self::Equal
+            | Self::NotEqual
+            | Self::Less
+            | Self::LessOrEqual
+            | Self::Greater
+            | Self::GreaterOrEqual => 3,
             Self::Add | Self::Subtract => 4,
             Self::Multiply | Self::Divide | Self::Modulo => 5,
             Self::Power => 7,
@@ -172,16 +179,15 @@ impl Parser<'_> {
         let next = if operator == Binary::Power { UNARY } else { operator.level() + 1 };
         let right = self.expression(next)?;
         if operator.level() == COMPARISON && self.binary(COMPARISON)?.is_some() {
-            let fault = Fault::new(Code::ExpressionSyntax, left.range.start..right.range.end, "comparisons do not chain");
+            let fault = Fault::new(
+                Code::ExpressionSyntax,
+                left.range.start..right.range.end,
+                "comparisons do not chain",
+            );
             return Err(fault.help("write `a < b and b < c`"));
         }
         let range = left.range.start..right.range.end;
-        let joined = Expression::new(Node::Binary(operator, Box::new([left, right])), range);
-        if joined.depth > HIGHEST {
-            let message = format!("this expression has more than {HIGHEST} operations in a row");
-            return Err(Fault::new(Code::ExpressionLimit, joined.range, message).label("too long"));
-        }
-        Ok(joined)
+        bounded(Expression::new(Node::Binary(operator, Box::new([left, right])), range))
     }
 
     /// Takes the operator that follows, if it binds at least as tightly as `level`.
@@ -205,7 +211,8 @@ impl Parser<'_> {
             return Ok(());
         }
         let sign = operator.text();
-        let fault = Fault::new(Code::ExpressionSyntax, range, format!("`{sign}` needs a space on both sides"));
+        let fault =
+            Fault::new(Code::ExpressionSyntax, range, format!("`{sign}` needs a space on both sides"));
         Err(fault.label(format!("write `a {sign} b`")).replace(if space(before.chars().next_back()) {
             format!("{sign} ")
         } else if space(after.chars().next()) {
@@ -241,11 +248,12 @@ impl Parser<'_> {
                 _ => None,
             };
             let Some(index) = index else {
-                let fault = Fault::new(Code::ExpressionSyntax, range, "a point has the parts `.x`, `.y` and `.z`");
+                let fault =
+                    Fault::new(Code::ExpressionSyntax, range, "a point has the parts `.x`, `.y` and `.z`");
                 return Err(fault.label("expected x, y or z"));
             };
             let place = whole.range.start..range.end;
-            whole = Expression::new(Node::Part(Box::new(whole), index), place);
+            whole = bounded(Expression::new(Node::Part(Box::new(whole), index), place))?;
         }
         Ok(whole)
     }
@@ -291,7 +299,11 @@ impl Parser<'_> {
         self.close(&Token::Close, "(", &open)?;
         let range = range.start..self.tokens[self.at - 1].range.end;
         if arguments.len() < function.least || arguments.len() > function.most {
-            let needs = if function.least == 1 { "1 argument".to_owned() } else { format!("{} arguments", function.least) };
+            let needs = if function.least == 1 {
+                "1 argument".to_owned()
+            } else {
+                format!("{} arguments", function.least)
+            };
             let message = format!("`{name}` takes {needs}, found {}", arguments.len());
             let fault = Fault::new(Code::ArgumentCount, range, message);
             return Err(fault.label(format!("expected {}", function.usage)));
@@ -326,13 +338,22 @@ impl Parser<'_> {
     fn surplus(&self) -> Fault {
         let range = self.here();
         let written = &self.text[range.clone()];
-        let fault = Fault::new(Code::ExpressionSyntax, range, format!("expected an operator, found `{written}`"));
+        let fault =
+            Fault::new(Code::ExpressionSyntax, range, format!("expected an operator, found `{written}`"));
         match self.peek() {
             Token::Close | Token::CloseList => fault.label("closes nothing"),
             Token::Comma => fault.label("only between arguments and in lists"),
             _ => fault.label("expected + - * / % ^ < > == and, or the end"),
         }
     }
+}
+
+fn bounded(expression: Expression) -> Result<Expression, Fault> {
+    if expression.depth <= HIGHEST {
+        return Ok(expression);
+    }
+    let message = format!("this expression has more than {HIGHEST} operations in a row");
+    Err(Fault::new(Code::ExpressionLimit, expression.range, message).label("too long"))
 }
 
 fn operator(token: &Token) -> Option<Binary> {
@@ -356,7 +377,8 @@ fn operator(token: &Token) -> Option<Binary> {
 }
 
 fn missing_operand(token: &Token, range: Range<usize>) -> Fault {
-    let message = if *token == Token::End { "this expression ends too early" } else { "a value is missing here" };
+    let message =
+        if *token == Token::End { "this expression ends too early" } else { "a value is missing here" };
     Fault::new(Code::ExpressionSyntax, range, message).label("expected a number, a name, a call, `(` or `[`")
 }
 

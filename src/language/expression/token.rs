@@ -104,7 +104,8 @@ impl Lexer<'_> {
         let written = &self.text[start..self.at];
         if self.rest().starts_with(|c: char| c.is_alphabetic() || c == '_') {
             let help = "write `2 * x` for a product";
-            let fault = Fault::new(Code::ExpressionSyntax, start..self.at + 1, "a letter right after a number");
+            let fault =
+                Fault::new(Code::ExpressionSyntax, start..self.at + 1, "a letter right after a number");
             return Err(fault.label("not a number").help(help));
         }
         match written.replace('_', "").parse::<f64>() {
@@ -137,7 +138,8 @@ impl Lexer<'_> {
             }
             None => {
                 let range = start..self.text.len();
-                Err(Fault::new(Code::ExpressionSyntax, range, "this string does not end").label("no closing quote"))
+                Err(Fault::new(Code::ExpressionSyntax, range, "this string does not end")
+                    .label("no closing quote"))
             }
         }
     }
@@ -159,7 +161,8 @@ impl Lexer<'_> {
     fn unknown(&self, first: char) -> Fault {
         let range = self.at..self.at + first.len_utf8();
         let shown = first.escape_debug();
-        let fault = Fault::new(Code::ExpressionSyntax, range, format!("`{shown}` means nothing in an expression"));
+        let fault =
+            Fault::new(Code::ExpressionSyntax, range, format!("`{shown}` means nothing in an expression"));
         match first {
             '=' => fault.help("write `==` to compare"),
             '&' => fault.help("write `and`"),

@@ -73,7 +73,8 @@ impl Parser<'_> {
         let label = if expected.is_empty() { String::new() } else { format!("expected {expected}") };
         let snippet = self.sources.snippet(span);
         if message == "duplicate key" {
-            let report = Diagnostic::error(Code::DuplicateName, format!("{} is written twice", name(snippet)));
+            let report =
+                Diagnostic::error(Code::DuplicateName, format!("{} is written twice", name(snippet)));
             return self.found.push(report.at(span, "the second time"));
         }
         self.found.push(Diagnostic::error(Code::Syntax, message).at(span, label));

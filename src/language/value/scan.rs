@@ -18,7 +18,8 @@ pub(crate) enum Finding {
 
 /// Looks through a text. At most one [`Finding::TooDeep`], which ends the search.
 pub(crate) fn scan(text: &str) -> Vec<Finding> {
-    let mut scanner = Scanner { bytes: text.as_bytes(), at: 0, open: Vec::new(), comma: None, found: Vec::new() };
+    let mut scanner =
+        Scanner { bytes: text.as_bytes(), at: 0, open: Vec::new(), comma: None, found: Vec::new() };
     while scanner.at < scanner.bytes.len() && scanner.step() {}
     scanner.found
 }
