@@ -1,7 +1,10 @@
 //! The language: from text to a typed, resolved [`Spec`](spec::Spec), or every error found.
 
 pub mod diagnostic;
+mod document;
 pub mod expression;
 pub mod source;
 pub mod spec;
 pub mod value;
+
+pub use document::Document;

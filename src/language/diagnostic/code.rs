@@ -86,6 +86,8 @@ codes! {
     DuplicateName = "K0304";
     /// a parameter is never used
     UnusedParameter = "K0305";
+    /// a document shows nothing
+    NothingToBake = "K0306";
 
     /// an expression cannot be read
     ExpressionSyntax = "K0401";

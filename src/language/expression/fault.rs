@@ -20,11 +20,19 @@ pub struct Fault {
     pub help: Option<String>,
     /// What to write in place of the range.
     pub replacement: Option<String>,
+    /// Whether it only follows from something that was reported before.
+    pub reported: bool,
 }
 
 impl Fault {
     pub(crate) fn new(code: Code, range: Range<usize>, message: impl Into<String>) -> Self {
-        Self { code, message: message.into(), range, label: String::new(), help: None, replacement: None }
+        let (label, help, replacement, reported) = (String::new(), None, None, false);
+        Self { code, message: message.into(), range, label, help, replacement, reported }
+    }
+
+    /// A fault that needs no words: its cause was reported.
+    pub(crate) fn reported(range: Range<usize>) -> Self {
+        Self { reported: true, ..Self::new(Code::ExpressionValue, range, "a name in it has no value") }
     }
 
     pub(crate) fn label(mut self, label: impl Into<String>) -> Self {

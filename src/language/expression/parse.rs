@@ -187,12 +187,7 @@ impl Parser<'_> {
             return Err(fault.help("write `a < b and b < c`"));
         }
         let range = left.range.start..right.range.end;
-        let joined = Expression::new(Node::Binary(operator, Box::new([left, right])), range);
-        if joined.depth > HIGHEST {
-            let message = format!("this expression has more than {HIGHEST} operations in a row");
-            return Err(Fault::new(Code::ExpressionLimit, joined.range, message).label("too long"));
-        }
-        Ok(joined)
+        bounded(Expression::new(Node::Binary(operator, Box::new([left, right])), range))
     }
 
     /// Takes the operator that follows, if it binds at least as tightly as `level`.
@@ -258,7 +253,7 @@ impl Parser<'_> {
                 return Err(fault.label("expected x, y or z"));
             };
             let place = whole.range.start..range.end;
-            whole = Expression::new(Node::Part(Box::new(whole), index), place);
+            whole = bounded(Expression::new(Node::Part(Box::new(whole), index), place))?;
         }
         Ok(whole)
     }
@@ -351,6 +346,14 @@ impl Parser<'_> {
             _ => fault.label("expected + - * / % ^ < > == and, or the end"),
         }
     }
+}
+
+fn bounded(expression: Expression) -> Result<Expression, Fault> {
+    if expression.depth <= HIGHEST {
+        return Ok(expression);
+    }
+    let message = format!("this expression has more than {HIGHEST} operations in a row");
+    Err(Fault::new(Code::ExpressionLimit, expression.range, message).label("too long"))
 }
 
 fn operator(token: &Token) -> Option<Binary> {

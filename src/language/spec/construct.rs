@@ -22,6 +22,9 @@ macro_rules! table {
         )*}
 
         impl $name {
+            /// The names of its fields in Rust.
+            pub(crate) const FIELDS: &[&str] = &[$(stringify!($field)),*];
+
             /// Reads these fields of a table that may have others.
             pub(crate) fn take(
                 fields: &mut $crate::language::spec::reader::Fields<'_>,

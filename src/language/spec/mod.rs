@@ -12,14 +12,17 @@ mod kind;
 mod limit;
 mod material;
 mod mesh;
+mod name;
 mod node;
 mod path;
 mod point;
 mod profile;
 mod reader;
 mod reference;
+mod resolve;
 mod scalar;
 mod schema;
+mod section;
 mod shape;
 mod spanned;
 mod spline;
@@ -43,3 +46,7 @@ pub use shape::{BoxShape, Cylinder, Shape, ShapeDefinition, ShapeOptions, Smooth
 pub use spanned::Sp;
 pub use spline::{Bezier, NaturalSpline, Parameters};
 pub use suggest::closest;
+
+pub(crate) use name::check_name;
+pub(crate) use reader::backtick;
+pub(crate) use section::{default_text, read_spec};

@@ -1,0 +1,124 @@
+//! Documents: files put together, variants laid over, parameters put in.
+
+mod evaluate;
+mod load;
+mod overlay;
+mod parameters;
+
+use std::sync::Arc;
+
+use crate::language::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
+use crate::language::document::evaluate::evaluate;
+use crate::language::document::overlay::overlay;
+use crate::language::source::{Files, SourceMap};
+use crate::language::spec::{Spec, closest, read_spec};
+use crate::language::value::{Table, quote};
+
+/// A document and all that it includes, parsed but not evaluated.
+#[derive(Clone, Debug)]
+pub struct Document {
+    sources: Arc<SourceMap>,
+    /// The definitions of all files; what only the main file may say stands here too.
+    base: Table,
+    /// What stands under `[variant]`.
+    variants: Table,
+}
+
+impl Document {
+    /// Reads a document and the documents that it includes. `main` is its path from the root of `files`.
+    ///
+    /// # Errors
+    /// Every file that cannot be read and every syntax error; beside them those errors of the rest that
+    /// cannot follow from the first.
+    pub fn load(main: &str, files: &dyn Files) -> Result<Self, Diagnostics> {
+        let (document, mut found) = load::load(main, files);
+        if found.is_empty() {
+            return Ok(document);
+        }
+        let rest = document.read(None, &[]).1;
+        let rest: Vec<_> = rest.into_iter().filter(|one| document.independent(one, &found)).collect();
+        found.extend(rest);
+        Err(document.diagnostics(found))
+    }
+
+    /// The names of the variants, in the order of the text.
+    #[must_use]
+    pub fn variants(&self) -> Vec<String> {
+        self.variants.entries.keys().cloned().collect()
+    }
+
+    /// The texts of the document, for rendering what is said about them.
+    #[must_use]
+    pub fn sources(&self) -> &Arc<SourceMap> {
+        &self.sources
+    }
+
+    /// Diagnostics on this document, sorted.
+    #[must_use]
+    pub fn diagnostics(&self, list: Vec<Diagnostic>) -> Diagnostics {
+        Diagnostics::new(list, Arc::clone(&self.sources))
+    }
+
+    /// The document with a variant laid over it and its parameters put in, and warnings. Overrides are
+    /// names of parameters and what they shall be, as the command line writes them.
+    ///
+    /// # Errors
+    /// Everything that is wrong, warnings included.
+    pub fn spec(
+        &self,
+        variant: Option<&str>,
+        overrides: &[(String, String)],
+    ) -> Result<(Spec, Vec<Diagnostic>), Diagnostics> {
+        let (spec, found) = self.read(variant, overrides);
+        let failed = found.iter().any(|one| one.severity == Severity::Error);
+        match spec {
+            Some(spec) if !failed => Ok((spec, self.diagnostics(found).into_vec())),
+            _ => Err(self.diagnostics(found)),
+        }
+    }
+
+    fn read(&self, variant: Option<&str>, overrides: &[(String, String)]) -> (Option<Spec>, Vec<Diagnostic>) {
+        let mut table = self.base.clone();
+        if let Some(name) = variant {
+            match self.variants.get(name) {
+                Some(partial) => overlay(&mut table, partial),
+                None => return (None, vec![self.unknown_variant(name)]),
+            }
+        }
+        let mut found = evaluate(&mut table, &self.variants, overrides, &self.sources);
+        let (spec, more) = read_spec(&table, &self.sources);
+        found.extend(more);
+        (spec, found)
+    }
+
+    fn unknown_variant(&self, name: &str) -> Diagnostic {
+        let report = Diagnostic::error(Code::UnknownVariant, format!("there is no variant {}", quote(name)));
+        let names = self.variants();
+        match closest(name, names.iter().map(String::as_str)) {
+            Some(near) => report.help(format!("did you mean \"{near}\"?")),
+            None if names.is_empty() => report.note("this document has no variants"),
+            None => report.note(format!("variants: {}", names.join(", "))),
+        }
+    }
+
+    /// Whether a diagnostic holds even where others left a part of the document unread.
+    fn independent(&self, one: &Diagnostic, causes: &[Diagnostic]) -> bool {
+        let line = |diagnostic: &Diagnostic| {
+            let place = self.sources.locate(diagnostic.place()?)?;
+            Some((place.file.to_owned(), place.line))
+        };
+        let follows = matches!(
+            one.code,
+            Code::MissingField
+                | Code::NoKind
+                | Code::UnknownName
+                | Code::WrongFamily
+                | Code::UnknownVariable
+                | Code::UnusedParameter
+                | Code::WrongCount
+                | Code::NothingToBake
+        );
+        let here = line(one);
+        !follows && !causes.iter().any(|cause| line(cause) == here)
+    }
+}

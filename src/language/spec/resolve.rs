@@ -1,0 +1,182 @@
+//! Names put together: unknown ones, wrong families, circles, and what a document shows.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use indexmap::IndexMap;
+
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::Span;
+use crate::language::spec::reader::{Reader, backtick};
+use crate::language::spec::reference::{Family, Use};
+use crate::language::spec::section::{place_of, titled};
+use crate::language::spec::suggest::closest;
+use crate::language::value::{Data, Table};
+
+/// Lists of names longer than this are not shown.
+const LISTED: usize = 12;
+
+/// The names of a document, whether what they name could be read or not.
+pub(crate) struct Names {
+    families: BTreeMap<Family, IndexMap<String, Span>>,
+}
+
+impl Names {
+    /// The names of an evaluated document.
+    pub(crate) fn of(table: &Table) -> Self {
+        let names = |family: Family| {
+            let mut names = IndexMap::new();
+            if let Some(Data::Table(entries)) = table.get(family.text()).map(|value| &value.data) {
+                names.extend(entries.entries.iter().map(|(name, entry)| (name.clone(), place_of(entry))));
+            }
+            (family, names)
+        };
+        Self { families: Family::ALL.into_iter().map(names).collect() }
+    }
+
+    fn find(&self, family: Family, name: &str) -> Option<Span> {
+        self.families.get(&family)?.get(name).copied()
+    }
+
+    fn list(&self, family: Family) -> impl Iterator<Item = &str> {
+        self.families.get(&family).into_iter().flat_map(|names| names.keys().map(String::as_str))
+    }
+}
+
+/// Checks every name that was used; the shapes that a document without nodes shows.
+///
+/// Cost: linear in the names and their uses.
+pub(crate) fn resolve(names: &Names, deepest: u32, reader: &mut Reader<'_>) -> Vec<String> {
+    let uses = std::mem::take(&mut reader.uses);
+    for one in &uses {
+        if names.find(one.family, &one.name).is_none() {
+            reader.report(unknown(one, names));
+        }
+    }
+    for family in Family::ALL {
+        Graph::of(family, names, &uses).check(deepest, reader);
+    }
+    let shapes = uses.iter().filter(|one| one.family == Family::Shape);
+    let used: BTreeSet<&str> = shapes.map(|one| one.name.as_str()).collect();
+    names.list(Family::Shape).filter(|name| !used.contains(name)).map(str::to_owned).collect()
+}
+
+fn unknown(one: &Use, names: &Names) -> Diagnostic {
+    let other =
+        Family::ALL.into_iter().find_map(|family| names.find(family, &one.name).map(|span| (family, span)));
+    if let Some((family, span)) = other {
+        let message = format!("{} is a {}, not a {}", backtick(&one.name), family.text(), one.family.text());
+        return Diagnostic::error(Code::WrongFamily, message)
+            .at(one.span, format!("expected the name of a {}", one.family.text()))
+            .also(span, format!("defined as a {}", family.text()));
+    }
+    let message = format!("there is no {}", titled(one.family, &one.name));
+    let report = Diagnostic::error(Code::UnknownName, message).at(one.span, "not defined");
+    if let Some(near) = closest(&one.name, names.list(one.family)) {
+        return report.suggest(one.span, format!("\"{near}\""), format!("did you mean `{near}`?"));
+    }
+    let known: Vec<_> = names.list(one.family).collect();
+    match known.len() {
+        0 => report.note(format!("this document defines no {}", one.family.text())),
+        1..=LISTED => report.note(format!("{}s: {}", one.family.text(), known.join(", "))),
+        _ => report,
+    }
+}
+
+/// Which definitions of a family use which others of it.
+struct Graph<'n> {
+    family: Family,
+    names: Vec<&'n str>,
+    edges: Vec<Vec<(usize, Span)>>,
+}
+
+/// How far the search has come with a definition.
+#[derive(Clone, Copy, PartialEq)]
+enum Mark {
+    New,
+    Open,
+    /// Finished; the longest chain of definitions that begins here.
+    Done(u32),
+}
+
+impl<'n> Graph<'n> {
+    fn of(family: Family, names: &'n Names, uses: &[Use]) -> Self {
+        let index: IndexMap<&str, usize> = names.list(family).zip(0..).collect();
+        let mut edges = vec![Vec::new(); index.len()];
+        for one in uses.iter().filter(|one| one.family == family) {
+            let user = one.user.as_ref().filter(|(from, _)| *from == family).map(|(_, name)| name.as_str());
+            let from = user.and_then(|name| index.get(name));
+            if let (Some(from), Some(to)) = (from, index.get(one.name.as_str())) {
+                edges[*from].push((*to, one.span));
+            }
+        }
+        Self { family, names: index.into_keys().collect(), edges }
+    }
+
+    /// Depth-first search without recursion: reports each circle that closes and chains that are too long.
+    fn check(&self, deepest: u32, reader: &mut Reader<'_>) {
+        let mut marks = vec![Mark::New; self.names.len()];
+        for start in 0..self.names.len() {
+            if marks[start] == Mark::New {
+                self.search(start, &mut marks, deepest, reader);
+            }
+        }
+    }
+
+    fn search(&self, start: usize, marks: &mut [Mark], deepest: u32, reader: &mut Reader<'_>) {
+        // Each step of the path: a definition, and how many of its uses were followed.
+        let mut path = vec![(start, 0)];
+        marks[start] = Mark::Open;
+        while let Some((at, next)) = path.last_mut() {
+            let Some((to, span)) = self.edges[*at].get(*next).copied() else {
+                let depth = self.depth(*at, marks);
+                marks[*at] = Mark::Done(depth);
+                if depth == deepest.saturating_add(1) {
+                    reader.report(self.too_deep(*at, deepest));
+                }
+                path.pop();
+                continue;
+            };
+            *next += 1;
+            match marks[to] {
+                Mark::New => {
+                    marks[to] = Mark::Open;
+                    path.push((to, 0));
+                }
+                Mark::Open => reader.report(self.circle(&path, to, span)),
+                Mark::Done(_) => {}
+            }
+        }
+    }
+
+    fn depth(&self, at: usize, marks: &[Mark]) -> u32 {
+        let below = self.edges[at].iter().map(|(to, _)| match marks[*to] {
+            Mark::Done(depth) => depth,
+            _ => 0,
+        });
+        below.max().unwrap_or(0).saturating_add(1)
+    }
+
+    fn circle(&self, path: &[(usize, usize)], to: usize, span: Span) -> Diagnostic {
+        let start = path.iter().position(|(at, _)| *at == to).unwrap_or(0);
+        let names: Vec<&str> = path[start..].iter().map(|(at, _)| self.names[*at]).collect();
+        let (family, first) = (self.family.text(), self.names[to]);
+        let message = match names.as_slice() {
+            [_] => format!("{} refers to itself", titled(self.family, first)),
+            _ => format!("{family}s refer to each other in a circle: {} -> {first}", names.join(" -> ")),
+        };
+        let mut report = Diagnostic::error(Code::Cycle, message).at(span, format!("leads back to `{first}`"));
+        for (at, followed) in &path[start..path.len() - 1] {
+            let (to, span) = self.edges[*at][followed - 1];
+            report = report.also(span, format!("`{}` uses `{}`", self.names[*at], self.names[to]));
+        }
+        report
+    }
+
+    fn too_deep(&self, at: usize, deepest: u32) -> Diagnostic {
+        let message = format!("more than {deepest} {}s refer to each other in a row", self.family.text());
+        let span = self.edges[at].first().map_or(Span::NONE, |(_, span)| *span);
+        Diagnostic::error(Code::TooDeep, message)
+            .at(span, "too deep")
+            .note("`recursion` in [limits] says how many")
+    }
+}
