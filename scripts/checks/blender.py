@@ -49,7 +49,7 @@ def shape(data: bpy.types.Mesh) -> dict[str, Any]:
     facts["bounds"] = box(vertex.co for vertex in mesh.verts)
     weld(mesh)
     facts["area"] = math.fsum(face.calc_area() for face in mesh.faces)
-    facts["volume-single"] = mesh.calc_volume(signed=True)
+    facts["closed-volume"] = mesh.calc_volume(signed=True)
     facts["proper-boundary-edges"] = sum(edge.is_boundary for edge in mesh.edges)
     facts["proper-manifold"] = all(edge.is_manifold and edge.is_contiguous for edge in mesh.edges)
     facts["proper-euler"] = len(mesh.verts) - len(mesh.edges) + len(mesh.faces)

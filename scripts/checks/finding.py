@@ -16,8 +16,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-type_of_facts = dict[str, Any]
-
 
 @dataclass
 class Measured:
@@ -30,8 +28,8 @@ class Measured:
     tool: str
     version: str
     file: str
-    totals: type_of_facts = field(default_factory=dict)
-    shapes: dict[str, type_of_facts] = field(default_factory=dict)
+    totals: dict[str, Any] = field(default_factory=dict)
+    shapes: dict[str, dict[str, Any]] = field(default_factory=dict)
     error: str | None = None
 
 

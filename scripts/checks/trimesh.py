@@ -45,13 +45,14 @@ def shape(raw: trimesh.Trimesh) -> dict[str, Any]:
         "euler": int(mesh.euler_number),
         "boundary-edges": len(trimesh.grouping.group_rows(mesh.edges_sorted, require_count=1)),
     }
-    if mesh.is_watertight:
-        facts["volume"] = float(mesh.volume)
-        facts["solid-centroid"] = mesh.center_mass.tolist()
-        facts["solid-inertia"] = mesh.moment_inertia.tolist()
-    facts["surface-centroid"] = mesh.centroid.tolist() if not mesh.is_watertight else None
-    facts["surface-inertia"] = surface_inertia(mesh).tolist()
-    return {name: value for name, value in facts.items() if value is not None}
+    solid = trimesh.triangles.mass_properties(mesh.triangles)
+    facts["closed-volume"] = float(solid["volume"])
+    facts["solid-centroid"] = solid["center_mass"].tolist()
+    facts["solid-inertia"] = solid["inertia"].tolist()
+    sheet = np.average(mesh.triangles_center, axis=0, weights=mesh.area_faces)
+    facts["surface-centroid"] = sheet.tolist()
+    facts["surface-inertia"] = surface_inertia(mesh.triangles - sheet, mesh.area_faces).tolist()
+    return facts
 
 
 def connected(mesh: trimesh.Trimesh) -> int:
@@ -60,18 +61,15 @@ def connected(mesh: trimesh.Trimesh) -> int:
     return len(set(labels.tolist()))
 
 
-def surface_inertia(mesh: trimesh.Trimesh) -> NDArray[np.float64]:
-    """The inertia about its centroid of a sheet that weighs one for each square meter.
+def surface_inertia(corners: NDArray[np.float64], areas: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The inertia about the origin of a sheet that weighs one for each unit of area.
 
     For a triangle with corners a, b, c and area A the second moment is
     A / 12 (aa' + bb' + cc' + (a + b + c)(a + b + c)').
     """
-    corners = mesh.triangles.astype(float) - np.average(
-        mesh.triangles_center, axis=0, weights=mesh.area_faces
-    )
     sums = corners.sum(axis=1)
-    second = np.einsum("t,tci,tcj->ij", mesh.area_faces, corners, corners)
-    second += np.einsum("t,ti,tj->ij", mesh.area_faces, sums, sums)
+    second = np.einsum("t,tci,tcj->ij", areas, corners, corners)
+    second += np.einsum("t,ti,tj->ij", areas, sums, sums)
     second /= 12
     return np.trace(second) * np.eye(3) - second
 
