@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from blake3 import blake3
+
 from checks.document import Document
 from checks.written import cache_figures
 

@@ -8,8 +8,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import made
 import pytest
+
+import made
 from checks import tools
 from checks.compare import compare
 from checks.finding import Measured
