@@ -150,11 +150,8 @@ def measured_quality(case: str, files: list[Path], folder: Path) -> dict[Path, d
 
 def tolerance(folder: Path) -> Part:
     """Triangles for a measured deviation: Kiln, CadQuery at the same one, and the asymptotic optimum."""
-    entry = Runs(
-        "Kiln",
-        [str(KILN), "bake", "tolerance.toml", "--out", "kiln", "--quiet"],
-        folder / "kiln/tolerance.glb",
-    )
+    line = [str(KILN), "bake", "tolerance.toml", "--out", "kiln", "--quiet"]
+    entry = Runs("Kiln", line, folder / "kiln" / "tolerance.glb")
     together([entry], 1, folder, tell)
     if entry.failure:
         return {"rows": [timing(entry)]}
@@ -216,9 +213,8 @@ def tables(figures: dict[str, Any]) -> str:
     blocks = [
         f"Measured on {figures['machine']}, {figures['date']}, median of {figures['runs']} whole processes."
     ]
-    for case in ("vase", "sweep"):
-        if case in figures:
-            blocks.append(grid_table(case, figures[case]["rows"]))
+    cases = [case for case in ("vase", "sweep") if case in figures]
+    blocks += [grid_table(case, figures[case]["rows"]) for case in cases]
     if "tolerance" in figures:
         blocks.append(tolerance_table(figures["tolerance"]["rows"]))
     if "memory" in figures:
