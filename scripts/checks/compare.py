@@ -1,0 +1,254 @@
+"""Claims of a report held against what the tools measured.
+
+A claim that a tool measures must hold within what that tool's own rounding explains; a claim that must be
+there and is missing, or that no tool could measure, is a finding too. Lengths are in meters.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from checks.finding import Finding, Measured
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+Facts = dict[str, Any]
+
+# Relative error of a sum over the mesh. trimesh and numpy sum doubles; MeshLab returns single precision
+# areas; Blender stores single precision and computes areas and volumes in it.
+PRECISION = {"written": 1e-9, "trimesh": 1e-9, "meshlab": 1e-6, "blender": 1e-5, "three": 1e-6}
+# Coordinates are written in single precision and only ever copied or turned by a node's matrix.
+COORDINATE = 1e-6
+
+COUNTS = {
+    "primitives", "triangles", "vertices", "points", "closed", "manifold", "components", "euler", "genus",
+    "boundary-edges", "boundary-loops", "degenerate-triangles", "meshes", "nodes", "materials", "images",
+    "draw-calls", "bytes", "blake3",
+}  # fmt: skip
+REQUIRED_OF_SHAPE = (
+    "primitives", "triangles", "vertices", "points", "bounds", "area", "volume", "centroid", "inertia",
+    "inertia-of", "closed", "manifold", "components", "euler", "genus", "boundary-edges", "boundary-loops",
+    "degenerate-triangles", "acmr", "atvr", "deviation",
+)  # fmt: skip
+REQUIRED_OF_TOTALS = (
+    "meshes", "primitives", "triangles", "vertices", "materials", "images", "nodes", "draw-calls", "bounds",
+)  # fmt: skip
+# Profile `core` must hold these whatever the report says. A normal of unit length in single precision is
+# off by about 1e-7 a component.
+DEMANDS = {
+    "validator-errors": 0,
+    "validator-warnings": 0,
+    "validator-infos": 0,
+    "required-extensions": [],
+    "unused-vertices": 0,
+    "largest-normal-error": 1e-6,
+}
+
+
+@dataclass(frozen=True)
+class Scale:
+    """The sizes that rounding errors of one shape grow with."""
+
+    reach: float
+    area: float
+    volume: float
+
+    @classmethod
+    def of(cls, claims: Facts) -> Scale:
+        """The scale of a shape from its claimed bounds, area and volume."""
+        return cls(
+            reach=max(map(abs, flat(claims.get("bounds", {}))), default=0.0),
+            area=abs(number(claims.get("area"))),
+            volume=abs(number(claims.get("volume"))),
+        )
+
+    def allowed(self, fact: str, tool: str) -> float:
+        """The largest difference in `fact` that `tool`'s rounding explains.
+
+        Volumes are sums of tetrahedra to the origin, so they lose digits with area times reach.
+        """
+        precision = PRECISION.get(tool, 0.0)
+        volume_error = precision * (self.volume + self.area * self.reach)
+        return {
+            "bounds": COORDINATE * self.reach,
+            "area": precision * self.area,
+            "volume": volume_error,
+            "closed-volume": volume_error,
+            "solid-centroid": precision * self.reach + volume_error * self.reach / (self.volume or 1.0),
+            "surface-centroid": precision * self.reach,
+            "solid-inertia": volume_error * self.reach**2,
+            "surface-inertia": precision * self.area * self.reach**2,
+            "acmr": 1e-6,
+            "atvr": 1e-6,
+        }.get(fact, 0.0)
+
+
+def compare(asset: str, report: Facts, measured: list[Measured]) -> list[Finding]:
+    """Every finding for one asset."""
+    findings = list(missing(asset, report))
+    for one in measured:
+        if one.error is not None:
+            findings.append(failure(asset, one.tool, one.error))
+            continue
+        totals = {**report.get("totals", {}), **report.get("file", {})}
+        findings += facts(asset, "totals", totals, one.tool, one.totals)
+        findings += shapes(asset, report.get("shapes", {}), one)
+    findings += deviations(asset, report.get("shapes", {}))
+    return findings + list(unmeasured(asset, report, findings))
+
+
+def shapes(asset: str, claimed: dict[str, Facts], one: Measured) -> Iterator[Finding]:
+    """The findings of one tool about the shapes; both sides must name the same ones."""
+    if one.shapes:
+        names, found = sorted(claimed), sorted(one.shapes)
+        yield Finding(asset, "shapes", one.tool, names, found, differs(names, found), 0.0)
+    for name in sorted(set(claimed) & set(one.shapes)):
+        yield from facts(asset, f"shapes.{name}", claimed[name], one.tool, one.shapes[name])
+
+
+def facts(asset: str, place: str, claims: Facts, tool: str, measured: Facts) -> Iterator[Finding]:
+    """The findings about one shape or about the totals."""
+    scale = Scale.of(claims)
+    for fact, found in measured.items():
+        if fact in DEMANDS:
+            yield demand(asset, f"{place}.{fact}", tool, found, measured)
+        elif fact == "self-intersections":
+            yield from intersections(asset, place, claims, tool, found)
+        elif (claim := claim_for(fact, claims)) is not None:
+            name, claimed = claim
+            allowed = scale.allowed(fact, tool)
+            yield Finding(asset, f"{place}.{name}", tool, claimed, found, differs(claimed, found), allowed)
+
+
+def claim_for(fact: str, claims: Facts) -> tuple[str, Any] | None:
+    """The claim that a tool's fact speaks about, or None where it speaks about none.
+
+    `proper-` facts are Blender's, whose import drops triangles without area. `solid-` and `surface-`
+    moments meet only a claim of that kind. `closed-volume` is a signed sum, asked of closed shapes only.
+    """
+    kind, _, rest = fact.partition("-")
+    if kind == "proper":
+        return proper(rest, claims)
+    if kind in ("solid", "surface") and rest in ("centroid", "inertia"):
+        return (rest, claims.get(rest)) if claims.get("inertia-of") == kind else None
+    if fact == "closed-volume":
+        return ("volume", claims.get("volume")) if claims.get("closed") else None
+    known = fact in COUNTS or fact in ("bounds", "area", "volume", "acmr", "atvr")
+    return (fact, claims[fact]) if known and fact in claims else None
+
+
+def proper(fact: str, claims: Facts) -> tuple[str, Any] | None:
+    """The claim for a mesh without its degenerate triangles; topology is compared only when it has none."""
+    degenerate = claims.get("degenerate-triangles", 0)
+    if fact == "triangles":
+        return fact, claims.get(fact, 0) - degenerate
+    return (fact, claims.get(fact)) if degenerate == 0 else None
+
+
+def demand(asset: str, place: str, tool: str, found: Any, measured: Facts) -> Finding:
+    """A finding about what profile `core` demands."""
+    wanted = DEMANDS[place.rpartition(".")[2]]
+    if isinstance(wanted, float):
+        return Finding(asset, place, tool, 0.0, found, found, wanted)
+    message = "; ".join(measured.get("validator-messages", [])) if found != wanted else ""
+    return Finding(asset, place, tool, wanted, found, differs(wanted, found), 0.0, message=message)
+
+
+def intersections(asset: str, place: str, claims: Facts, tool: str, found: int) -> Iterator[Finding]:
+    """A warning when a shape claimed closed has faces that cut each other: it bounds no solid there."""
+    if claims.get("closed") and found:
+        message = f"{found} triangles of a closed shape cut one another"
+        place = f"{place}.self-intersections"
+        yield Finding(asset, place, tool, 0, found, float(found), 0.0, severity="warning", message=message)
+
+
+def missing(asset: str, report: Facts) -> Iterator[Finding]:
+    """A finding for each claim that every report must make."""
+    demands = [("totals", REQUIRED_OF_TOTALS, report.get("totals", {}))]
+    demands += [("file", ("name", "bytes", "blake3"), report.get("file", {}))]
+    demands += [
+        (f"shapes.{name}", REQUIRED_OF_SHAPE, claims) for name, claims in report.get("shapes", {}).items()
+    ]
+    if not report.get("shapes"):
+        yield failure(asset, "report", "the report names no shape")
+    for place, wanted, claims in demands:
+        for fact in wanted:
+            if fact not in claims:
+                yield failure(asset, "report", f"`{place}.{fact}` is missing", f"{place}.{fact}")
+
+
+def deviations(asset: str, claimed: dict[str, Facts]) -> Iterator[Finding]:
+    """The report against itself: the bound is within the tolerance, the measured within the bound."""
+    for name, claims in claimed.items():
+        deviation = claims.get("deviation") or {}
+        for lower, upper in (("bound", "tolerance"), ("measured", "bound")):
+            low, high = deviation.get(lower), deviation.get(upper)
+            if low is not None and high is not None:
+                place = f"shapes.{name}.deviation.{lower}"
+                yield Finding(asset, place, "report", high, low, max(0.0, low - high), 1e-9 * abs(high))
+
+
+def unmeasured(asset: str, report: Facts, findings: list[Finding]) -> Iterator[Finding]:
+    """A finding for each claim that no tool spoke about, so that no number passes unread.
+
+    Volume, genus and boundary loops mean something on manifold shapes only; the tools keep silent on others.
+    """
+    spoken = {finding.place for finding in findings if finding.tool != "report"}
+    for name, claims in report.get("shapes", {}).items():
+        silent = {"inertia-of", "deviation"}
+        if not claims.get("manifold"):
+            silent |= {"volume", "genus", "boundary-loops"}
+        for fact in REQUIRED_OF_SHAPE:
+            place = f"shapes.{name}.{fact}"
+            if fact in claims and fact not in silent and place not in spoken:
+                yield failure(asset, "report", f"no tool measured `{place}`", place)
+
+
+def failure(asset: str, tool: str, message: str, place: str = "") -> Finding:
+    """A finding that says why nothing could be compared."""
+    return Finding(asset, place, tool, None, None, math.inf, 0.0, message=message)
+
+
+def differs(claimed: Any, found: Any) -> float:
+    """The largest difference between two values of the same form; infinite when the forms differ."""
+    left, right = flat(claimed), flat(found)
+    if is_numbers(left) and is_numbers(right) and len(left) == len(right):
+        if form(claimed) != form(found):
+            return math.inf
+        return max((distance(a, b) for a, b in zip(left, right, strict=True)), default=0.0)
+    return 0.0 if claimed == found else math.inf
+
+
+def distance(a: float, b: float) -> float:
+    """|a - b|, infinite where it is not a number."""
+    gap = abs(a - b)
+    return gap if math.isfinite(gap) else math.inf
+
+
+def flat(value: Any) -> list[Any]:
+    """The leaves of nested lists and tables, tables in the order of their keys."""
+    if isinstance(value, dict):
+        return [leaf for key in sorted(value) for leaf in flat(value[key])]
+    if isinstance(value, list):
+        return [leaf for item in value for leaf in flat(item)]
+    return [value]
+
+
+def form(value: Any) -> Any:
+    """The nesting of a value without its leaves."""
+    if isinstance(value, dict):
+        return {key: form(item) for key, item in value.items()}
+    return [form(item) for item in value] if isinstance(value, list) else None
+
+
+def is_numbers(values: list[Any]) -> bool:
+    """Whether all values are numbers; truth values are not."""
+    return all(isinstance(value, int | float) and not isinstance(value, bool) for value in values)
+
+
+def number(value: Any) -> float:
+    """A number, or zero for anything else."""
+    return float(value) if is_numbers([value]) else 0.0

@@ -1,0 +1,78 @@
+"""What trimesh finds: volume and moments, watertightness, Euler number, world bounds through its scene."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import trimesh
+
+from checks import finding
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+TOOL = "trimesh"
+
+
+def measure(path: Path) -> finding.Measured:
+    """The facts of one file. A mesh of several primitives becomes several geometries, joined again here."""
+    scene = trimesh.load_scene(path, process=False, merge_primitives=True)
+    low, high = scene.bounds
+    totals = {
+        "bounds": {"min": low.tolist(), "max": high.tolist()},
+        "meshes": len(scene.geometry),
+        "triangles": sum(len(mesh.faces) for mesh in scene.geometry.values()),
+    }
+    shapes = {name: shape(mesh) for name, mesh in scene.geometry.items()}
+    return finding.Measured(TOOL, trimesh.__version__, str(path), totals, shapes)
+
+
+def shape(raw: trimesh.Trimesh) -> dict[str, Any]:
+    """The facts of one mesh, after merging vertices at equal positions."""
+    mesh = trimesh.Trimesh(raw.vertices, raw.faces, process=False)
+    mesh.merge_vertices(merge_tex=True, merge_norm=True)
+    facts: dict[str, Any] = {
+        "triangles": len(raw.faces),
+        "vertices": len(raw.vertices),
+        "points": len(mesh.vertices),
+        "bounds": {"min": mesh.bounds[0].tolist(), "max": mesh.bounds[1].tolist()},
+        "area": float(mesh.area),
+        "manifold": bool(mesh.is_watertight and mesh.is_winding_consistent),
+        "components": connected(mesh),
+        "euler": int(mesh.euler_number),
+        "boundary-edges": len(trimesh.grouping.group_rows(mesh.edges_sorted, require_count=1)),
+    }
+    solid = trimesh.triangles.mass_properties(mesh.triangles)
+    facts["closed-volume"] = float(solid["volume"])
+    facts["solid-centroid"] = solid["center_mass"].tolist()
+    facts["solid-inertia"] = solid["inertia"].tolist()
+    sheet = np.average(mesh.triangles_center, axis=0, weights=mesh.area_faces)
+    facts["surface-centroid"] = sheet.tolist()
+    facts["surface-inertia"] = surface_inertia(mesh.triangles - sheet, mesh.area_faces).tolist()
+    return facts
+
+
+def connected(mesh: trimesh.Trimesh) -> int:
+    """Parts of the surface, where sharing a point connects."""
+    labels = trimesh.graph.connected_component_labels(mesh.edges, node_count=len(mesh.vertices))
+    return len(set(labels.tolist()))
+
+
+def surface_inertia(corners: NDArray[np.float64], areas: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The inertia about the origin of a sheet that weighs one for each unit of area.
+
+    For a triangle with corners a, b, c and area A the second moment is
+    A / 12 (aa' + bb' + cc' + (a + b + c)(a + b + c)').
+    """
+    sums = corners.sum(axis=1)
+    second = np.einsum("t,tci,tcj->ij", areas, corners, corners)
+    second += np.einsum("t,ti,tj->ij", areas, sums, sums)
+    second /= 12
+    return np.trace(second) * np.eye(3) - second
+
+
+if __name__ == "__main__":
+    finding.run(TOOL, trimesh.__version__, measure)

@@ -1,0 +1,171 @@
+"""What stands in the file itself: counts, hashes, topology by exact edge counting, cache statistics.
+
+No library measures here: numpy reads the arrays and this module counts. It covers the claims that no tool
+measures in the report's own terms (`closed` counts directed edges; ACMR is a simulated cache).
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from blake3 import blake3
+
+from checks import finding
+from checks.document import Document, Mesh, Primitive
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+TOOL = "written"
+CACHE_ENTRIES = 16  # vertices in the simulated first-in-first-out cache; meshoptimizer's usual figure
+
+
+def measure(path: Path) -> finding.Measured:
+    """The facts of one file."""
+    data = path.read_bytes()
+    document = Document(path)
+    totals = count(document)
+    totals["bytes"] = len(data)
+    totals["blake3"] = blake3(data).hexdigest()
+    totals["bounds"] = world_bounds(document)
+    totals["required-extensions"] = document.json.get("extensionsRequired", [])
+    shapes = {mesh.name: shape(mesh) for mesh in document.meshes}
+    return finding.Measured(TOOL, version("numpy"), str(path), totals, shapes)
+
+
+def count(document: Document) -> dict[str, Any]:
+    """Counts of the whole file; draw calls count every instance, the other sums every mesh once."""
+    meshes = document.meshes
+    totals = {key: len(document.json.get(key, [])) for key in ("materials", "images", "nodes")}
+    totals["meshes"] = len(meshes)
+    totals["primitives"] = sum(len(mesh.primitives) for mesh in meshes)
+    totals["triangles"] = sum(len(mesh.triangles) for mesh in meshes)
+    totals["vertices"] = sum(len(mesh.positions) for mesh in meshes)
+    totals["draw-calls"] = sum(len(meshes[i].primitives) for i, _ in document.instances)
+    return totals
+
+
+def world_bounds(document: Document) -> dict[str, list[float]]:
+    """The box of all instances in world coordinates."""
+    corners = []
+    for index, world in document.instances:
+        points = document.meshes[index].merged[0] @ world[:3, :3].T + world[:3, 3]
+        corners += [points.min(axis=0), points.max(axis=0)]
+    box = np.array(corners)
+    return {"min": box.min(axis=0).tolist(), "max": box.max(axis=0).tolist()}
+
+
+def shape(mesh: Mesh) -> dict[str, Any]:
+    """The facts of one mesh."""
+    points, triangles = mesh.merged
+    edges = Edges(triangles)
+    facts: dict[str, Any] = {
+        "primitives": len(mesh.primitives),
+        "triangles": len(mesh.triangles),
+        "vertices": len(mesh.positions),
+        "points": len(points),
+        "bounds": {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()},
+        "closed": edges.closed,
+        "manifold": edges.manifold,
+        "components": components(len(points), triangles),
+        "euler": len(points) - edges.distinct + len(triangles),
+        "boundary-edges": edges.boundary,
+        "degenerate-triangles": degenerate(points, triangles),
+        "largest-normal-error": max(normal_error(p) for p in mesh.primitives),
+        "unused-vertices": sum(unused(p) for p in mesh.primitives),
+        "attributes": sorted({name for p in mesh.primitives for name in p.attributes}),
+    }
+    facts["acmr"], facts["atvr"] = cache_figures(mesh)
+    return facts
+
+
+class Edges:
+    """Edges between merged points, counted in each direction."""
+
+    def __init__(self, triangles: NDArray[np.int64]) -> None:
+        directed = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+        directed = directed[directed[:, 0] != directed[:, 1]]
+        forward = directed[:, 0] < directed[:, 1]
+        _, which = np.unique(np.sort(directed, axis=1), axis=0, return_inverse=True)
+        which = which.ravel()
+        self.distinct = int(which.max(initial=-1)) + 1
+        self.up = np.bincount(which[forward], minlength=self.distinct)
+        self.down = np.bincount(which[~forward], minlength=self.distinct)
+
+    @property
+    def closed(self) -> bool:
+        """Whether each edge is used equally often in both directions."""
+        return bool((self.up == self.down).all())
+
+    @property
+    def manifold(self) -> bool:
+        """Whether each edge is used exactly once in each direction."""
+        return bool(((self.up == 1) & (self.down == 1)).all())
+
+    @property
+    def boundary(self) -> int:
+        """Edges that one triangle uses."""
+        return int(((self.up + self.down) == 1).sum())
+
+
+def components(points: int, triangles: NDArray[np.int64]) -> int:
+    """Parts of the surface, where sharing a point connects."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    ends = triangles[:, [0, 1, 1, 2]].reshape(-1, 2)
+    graph = coo_array((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(points, points))
+    return int(connected_components(graph, directed=False)[0])
+
+
+def degenerate(points: NDArray[np.float64], triangles: NDArray[np.int64]) -> int:
+    """Triangles whose area is exactly zero in double precision."""
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    return int((np.cross(b - a, c - a) == 0).all(axis=1).sum())
+
+
+def normal_error(primitive: Primitive) -> float:
+    """How far the longest or shortest written normal is from length one; infinite without normals."""
+    normals = primitive.attributes.get("NORMAL")
+    if normals is None:
+        return float("inf")
+    return float(np.abs(np.linalg.norm(normals.astype(float), axis=1) - 1).max())
+
+
+def unused(primitive: Primitive) -> int:
+    """Vertices that no triangle of the primitive uses."""
+    used = np.zeros(len(primitive.attributes["POSITION"]), bool)
+    used[primitive.triangles.ravel()] = True
+    return int((~used).sum())
+
+
+def cache_figures(mesh: Mesh) -> tuple[float, float]:
+    """(ACMR, ATVR) of the mesh's primitives: vertices shaded for each triangle, and for each vertex."""
+    shaded = sum(misses(p.triangles) for p in mesh.primitives)
+    vertices = sum(len(p.attributes["POSITION"]) for p in mesh.primitives)
+    return shaded / len(mesh.triangles), shaded / vertices
+
+
+def misses(triangles: NDArray[np.int64]) -> int:
+    """Vertices that a first-in-first-out cache has to shade."""
+    held: set[int] = set()
+    order: deque[int] = deque()
+    shaded = 0
+    for vertex in triangles.ravel().tolist():
+        if vertex in held:
+            continue
+        shaded += 1
+        held.add(vertex)
+        order.append(vertex)
+        if len(order) > CACHE_ENTRIES:
+            held.discard(order.popleft())
+    return shaded
+
+
+if __name__ == "__main__":
+    finding.run(TOOL, version("numpy"), measure)

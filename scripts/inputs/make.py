@@ -1,0 +1,27 @@
+"""Writes every input of the gallery: `python scripts/inputs/make.py [FOLDER]`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from inputs import bird, crate, label
+
+SPECS = Path(__file__).resolve().parents[2] / "specs" / "inputs"
+
+
+def main() -> None:
+    """Write the files that are not there yet or differ."""
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else SPECS
+    folder.mkdir(parents=True, exist_ok=True)
+    label.draw().write(folder / "label.png")
+    color, normal = crate.draw()
+    color.write(folder / "crate-color.png")
+    normal.write(folder / "crate-normal.png")
+    (folder / "bird.obj").write_text(bird.obj(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

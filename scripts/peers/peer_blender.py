@@ -1,0 +1,52 @@
+"""Blender: the screw modifier and the curve bevel, exported by its own glTF exporter.
+
+`peer_blender.py CASE OUT.glb`
+"""
+
+from __future__ import annotations
+
+import sys
+
+import bpy  # isort: skip -- the wheel makes the rest importable
+from models import PROFILE_SEGMENTS, TUBE_RADIUS, TUBE_SEGMENTS, TURN_SEGMENTS, path, profile
+
+
+def vase() -> None:
+    """The profile as a polyline with a screw modifier."""
+    mesh = bpy.data.meshes.new("vase")
+    points = [(radius, 0.0, height) for radius, height in profile()]
+    mesh.from_pydata(points, [(i, i + 1) for i in range(PROFILE_SEGMENTS)], [])
+    screw = show(mesh).modifiers.new("screw", "SCREW")
+    screw.steps = screw.render_steps = TURN_SEGMENTS
+    screw.use_merge_vertices, screw.merge_threshold = True, 1e-6
+    screw.use_normal_calculate = screw.use_smooth_shade = True
+
+
+def sweep() -> None:
+    """The path as a curve with a round bevel; its resolution counts the points of a quarter."""
+    curve = bpy.data.curves.new("sweep", "CURVE")
+    curve.dimensions, curve.twist_mode = "3D", "MINIMUM"
+    curve.bevel_depth, curve.bevel_resolution = TUBE_RADIUS, (TUBE_SEGMENTS - 4) // 2
+    curve.use_fill_caps = True
+    points = path()
+    spline = curve.splines.new("POLY")
+    spline.points.add(len(points) - 1)
+    for at, point in zip(spline.points, points, strict=True):
+        at.co = (*point, 1.0)
+    item = show(curve)
+    bpy.context.view_layer.objects.active = item
+    item.select_set(True)
+    bpy.ops.object.convert(target="MESH")
+
+
+def show(data: bpy.types.ID) -> bpy.types.Object:
+    """An object of the scene for mesh or curve data."""
+    item = bpy.data.objects.new(data.name, data)
+    bpy.context.scene.collection.objects.link(item)
+    return item
+
+
+if __name__ == "__main__":
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    {"vase": vase, "sweep": sweep}[sys.argv[1]]()
+    bpy.ops.export_scene.gltf(filepath=sys.argv[2], export_apply=True, export_animations=False)
