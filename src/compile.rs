@@ -1,9 +1,10 @@
 //! The pipeline, one line a stage.
 
 use crate::build::{self, Built};
+use crate::geometry::curve::AnyCurve;
 use crate::geometry::tessellate::{Evidence, TessellateError};
 use crate::language::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::language::document::Document;
+use crate::language::Document;
 use crate::language::source::{Files, Span};
 use crate::language::spec::{Assertion, Demand, Expected, Spec};
 use crate::model::{Model, ShapeHandle};
@@ -86,6 +87,20 @@ pub fn model(document: &Document, files: &dyn Files, options: &Options) -> Resul
     let (spec, _) = document.spec(options.variant.as_deref(), &options.overrides)?;
     let built = build::model(&spec, &options.name, files).map_err(|list| document.diagnostics(list))?;
     Ok(built.model)
+}
+
+/// The curve of a name, for `sample`; none when there is no such curve.
+///
+/// # Errors
+/// Everything that is wrong with the document.
+pub fn curve(
+    document: &Document,
+    files: &dyn Files,
+    options: &Options,
+    name: &str,
+) -> Result<Option<AnyCurve>, Diagnostics> {
+    let (spec, _) = document.spec(options.variant.as_deref(), &options.overrides)?;
+    build::curve(&spec, name, files).map_err(|list| document.diagnostics(list))
 }
 
 fn file_name(options: &Options) -> String {

@@ -19,7 +19,7 @@ fn positions(points: &[Sp<Point>]) -> Vec<DVec3> {
 
 impl Builder<'_> {
     /// The curve of a name, built at its first use.
-    pub(super) fn named_curve(&mut self, name: &str, _user: Span) -> Option<AnyCurve> {
+    pub(super) fn named_curve(&mut self, name: &str) -> Option<AnyCurve> {
         if let Some(known) = self.curves.get(name) {
             return known.clone();
         }
@@ -32,7 +32,7 @@ impl Builder<'_> {
     /// The curve that a field asks for.
     pub(super) fn curve_of(&mut self, reference: &CurveReference) -> Option<AnyCurve> {
         match reference {
-            CurveReference::Named(name) => self.named_curve(&name.value, name.span),
+            CurveReference::Named(name) => self.named_curve(&name.value),
             CurveReference::Inline(curve) => self.curve(&curve.value, curve.span),
         }
     }
@@ -62,7 +62,7 @@ impl Builder<'_> {
             })),
             Curve::NaturalSpline(spline) => self.natural_spline(spline, span),
             Curve::Bezier(bezier) => self.bezier(bezier, span),
-            Curve::Path(path) => self.path(path, span),
+            Curve::Path(path) => self.path(path),
             Curve::Reverse(reverse) => {
                 let curve = self.curve_of(&reverse.of)?;
                 Some(AnyCurve::Reversed(Reversed::new(curve)))
@@ -136,7 +136,7 @@ impl Builder<'_> {
         }
     }
 
-    fn path(&mut self, path: &crate::language::spec::Path, span: Span) -> Option<AnyCurve> {
+    fn path(&mut self, path: &crate::language::spec::Path) -> Option<AnyCurve> {
         let mut curves = Vec::new();
         let mut current = path.start.position;
         for segment in &path.segments {
@@ -150,7 +150,6 @@ impl Builder<'_> {
         }
         let built = Path::new(curves)?;
         self.check_joints(path, &built);
-        let _ = span;
         Some(AnyCurve::Path(built))
     }
 

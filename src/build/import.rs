@@ -84,9 +84,11 @@ impl Builder<'_> {
                     }
                     _ => Code::ImportFailed,
                 };
-                let report =
-                    Diagnostic::error(code, message).at(file.span, "cannot be imported").help(error.hint());
-                self.report(report);
+                let report = Diagnostic::error(code, message).at(file.span, "cannot be imported");
+                self.report(match error.hint() {
+                    Some(hint) => report.help(hint),
+                    None => report,
+                });
                 None
             }
         }

@@ -96,13 +96,15 @@ impl Builder<'_> {
                 return None;
             }
         };
-        let facts = match crate::import::image::inspect(&bytes, self.spec.limits.image_pixels) {
+        let facts = match crate::import::image::read(&bytes, self.spec.limits.image_pixels) {
             Ok(facts) => facts,
             Err(error) => {
                 let message = format!("{} cannot be used as a texture: {error}", file.value.written);
-                let report =
-                    Diagnostic::error(Code::BadImage, message).at(file.span, "this image").help(error.hint());
-                self.report(report);
+                let report = Diagnostic::error(Code::BadImage, message).at(file.span, "this image");
+                self.report(match error.hint() {
+                    Some(hint) => report.help(hint),
+                    None => report,
+                });
                 return None;
             }
         };
@@ -110,8 +112,8 @@ impl Builder<'_> {
         Some(Image {
             name: stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
             kind: match facts.kind {
-                crate::import::image::ImageKind::Png => ImageKind::Png,
-                crate::import::image::ImageKind::Jpeg => ImageKind::Jpeg,
+                crate::import::image::Kind::Png => ImageKind::Png,
+                crate::import::image::Kind::Jpeg => ImageKind::Jpeg,
             },
             bytes,
         })

@@ -14,6 +14,7 @@ mod shape;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use indexmap::IndexMap;
 
+use crate::geometry::curve::AnyCurve;
 use crate::language::diagnostic::{Diagnostic, Severity};
 use crate::language::source::{Files, Span};
 use crate::language::spec::{Spec, Up};
@@ -44,6 +45,16 @@ pub fn model(spec: &Spec, name: &str, files: &dyn Files) -> Result<Built, Vec<Di
     Ok(Built { model, places, warnings: reports })
 }
 
+/// Builds one curve of a document; none when there is no such curve.
+///
+/// # Errors
+/// All faults of that curve and of those it is made from.
+pub fn curve(spec: &Spec, name: &str, files: &dyn Files) -> Result<Option<AnyCurve>, Vec<Diagnostic>> {
+    let mut builder = Builder::new(spec, name, files);
+    let curve = builder.named_curve(name);
+    if builder.reports.is_empty() { Ok(curve) } else { Err(builder.reports) }
+}
+
 /// The model in the making. A definition that failed is `None` in its map and is not tried again.
 struct Builder<'a> {
     spec: &'a Spec,
@@ -54,7 +65,7 @@ struct Builder<'a> {
     shapes: IndexMap<String, Option<ShapeHandle>>,
     materials: IndexMap<String, Option<MaterialHandle>>,
     images: IndexMap<String, Option<ImageHandle>>,
-    curves: IndexMap<String, Option<crate::geometry::curve::AnyCurve>>,
+    curves: IndexMap<String, Option<AnyCurve>>,
 }
 
 impl<'a> Builder<'a> {
@@ -93,8 +104,8 @@ impl<'a> Builder<'a> {
         for name in spec.materials.keys() {
             self.material(name);
         }
-        for (name, definition) in &spec.curves {
-            self.named_curve(name, definition.name.span);
+        for name in spec.curves.keys() {
+            self.named_curve(name);
         }
         for name in spec.shapes.keys() {
             self.named_shape(name);

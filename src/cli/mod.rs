@@ -1,6 +1,70 @@
 //! The command line, the only part that prints.
+//!
+//! Exit codes: 0 all went well, 1 errors in documents, 2 wrong usage, 3 files that cannot be read or written.
+
+mod arguments;
+mod bake;
+mod check;
+mod describe;
+mod inspect;
+mod output;
+mod project;
+mod sample;
+mod starter;
+
+use std::process::ExitCode;
+
+use clap::Parser as _;
+
+use arguments::{Arguments, Command};
+
+/// How a command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Outcome {
+    /// All went well.
+    Good,
+    /// Errors in documents.
+    Errors,
+    /// Wrong usage.
+    Usage,
+    /// Files that cannot be read or written.
+    Files,
+}
+
+impl Outcome {
+    fn code(self) -> u8 {
+        match self {
+            Self::Good => 0,
+            Self::Errors => 1,
+            Self::Usage => 2,
+            Self::Files => 3,
+        }
+    }
+}
 
 /// Runs the command named by the process arguments and gives its exit code.
-pub fn run() -> std::process::ExitCode {
-    std::process::ExitCode::SUCCESS
+#[must_use]
+pub fn run() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let help = !error.use_stderr();
+            // A closed pipe is no reason to fail.
+            let _ = error.print();
+            return ExitCode::from(if help { Outcome::Good.code() } else { Outcome::Usage.code() });
+        }
+    };
+    let printer = output::Printer::new(&arguments.common);
+    let outcome = match arguments.command {
+        Command::Bake(bake) => bake::run(&bake, &printer),
+        Command::Check(check) => check::run(&check, &printer),
+        Command::Sample(sample) => sample::run(&sample, &printer),
+        Command::Schema => describe::schema(&printer),
+        Command::Reference => describe::reference(&printer),
+        Command::Explain(explain) => describe::explain(&explain, &printer),
+        Command::New(new) => starter::run(&new, &printer),
+        Command::Inspect(inspect) => inspect::run(&inspect, &printer),
+        Command::Completions(completions) => describe::completions(&completions),
+    };
+    ExitCode::from(outcome.code())
 }

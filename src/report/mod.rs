@@ -20,7 +20,8 @@ use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::Evidence;
 use crate::gltf::{Read, ReadError, Written, WrittenGeometry, read};
 use crate::model::{Model, ShapeHandle};
-use facts::MeshFacts;
+use facts::{FactsError, MeshFacts};
+use thiserror::Error;
 
 /// What is known of an asset.
 #[derive(Clone, Debug, Serialize)]
@@ -165,6 +166,17 @@ pub struct About<'a> {
     pub measure: bool,
 }
 
+/// Why a file cannot be measured: a bug of the writer, or more triangles than can be counted.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ReportError {
+    /// The bytes cannot be read back.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// A mesh cannot be measured.
+    #[error(transparent)]
+    Facts(#[from] FactsError),
+}
+
 /// Measures the bytes of a file.
 ///
 /// # Errors
@@ -174,12 +186,12 @@ pub fn measure(
     model: &Model,
     shapes: &[ShapeHandle],
     about: &About<'_>,
-) -> Result<Report, ReadError> {
+) -> Result<Report, ReportError> {
     let file = read(&written.bytes)?;
     let mut facts = IndexMap::new();
     for (known, handle) in written.geometries.iter().zip(shapes) {
         let measured = about.measure.then(|| measure_deviation(&file.geometries[known.mesh], known, model, *handle));
-        facts.insert(known.name.clone(), shape_facts(&file, known, (model, *handle), measured));
+        facts.insert(known.name.clone(), shape_facts(&file, known, (model, *handle), measured)?);
     }
     let nodes = nodes(&file);
     Ok(Report {
@@ -205,16 +217,14 @@ fn shape_facts(
     known: &WrittenGeometry,
     (model, handle): (&Model, ShapeHandle),
     measured: Option<f64>,
-) -> ShapeFacts {
+) -> Result<ShapeFacts, ReportError> {
     let geometry = &file.geometries[known.mesh];
-    let facts = facts::measure(&geometry.positions, &geometry.indices);
-    let corner = |corner: [f64; 3]| corner.iter().fold(0.0_f64, |reach, part| reach.max(part.abs()));
-    let reach = corner(facts.bounds.min).max(corner(facts.bounds.max));
-    ShapeFacts {
+    let facts = facts::measure(&geometry.positions, &geometry.indices)?;
+    Ok(ShapeFacts {
         primitives: geometry.parts.len(),
         deviation: DeviationFacts {
             tolerance: known.tolerance,
-            bound: known.deviation.bound + single_rounding(reach),
+            bound: known.deviation.bound + single_rounding(extent(&facts).reach()),
             kind: match known.deviation.evidence {
                 Evidence::Exact => Kind::Exact,
                 Evidence::Proved => Kind::Proved,
@@ -224,7 +234,12 @@ fn shape_facts(
         },
         polygons: polygons::polygon_facts(model, handle),
         facts,
-    }
+    })
+}
+
+fn extent(facts: &MeshFacts) -> Bounds {
+    let point = |corner: [f32; 3]| glam::Vec3::from_array(corner).as_dvec3();
+    facts.bounds.map_or(Bounds::EMPTY, |bounds| Bounds { min: point(bounds.min), max: point(bounds.max) })
 }
 
 fn nodes(file: &Read) -> Vec<NodeFacts> {
@@ -288,10 +303,7 @@ fn totals(file: &Read, shapes: &IndexMap<String, ShapeFacts>, written: &Written,
         let plain = matrix == glam::DMat4::IDENTITY;
         let known = written.geometries.iter().find(|known| known.mesh == mesh.value());
         bounds = match known.and_then(|known| shapes.get(&known.name)).filter(|_| plain) {
-            Some(facts) => bounds.union(Bounds {
-                min: facts.facts.bounds.min.into(),
-                max: facts.facts.bounds.max.into(),
-            }),
+            Some(facts) => bounds.union(extent(&facts.facts)),
             None => geometry.positions.iter().fold(bounds, |bounds, position| {
                 let place = glam::Vec3::from_array(*position).as_dvec3();
                 bounds.with_point(matrix.transform_point3(place))

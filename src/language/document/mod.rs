@@ -41,6 +41,12 @@ impl Document {
         Err(document.diagnostics(found))
     }
 
+    /// Whether it defines nothing that could be shown: materials and curves for others to include.
+    #[must_use]
+    pub fn is_library(&self) -> bool {
+        !["shape", "node"].iter().any(|family| self.base.entries.contains_key(*family))
+    }
+
     /// The names of the variants, in the order of the text.
     #[must_use]
     pub fn variants(&self) -> Vec<String> {

@@ -1,0 +1,273 @@
+//! `kiln bake`: documents into files.
+
+use std::collections::BTreeMap;
+use std::io::Write as _;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use serde_json::json;
+
+use super::Outcome;
+use super::arguments::Bake;
+use super::output::Printer;
+use super::project::{Task, reason, tasks};
+use crate::compile::{Compiled, Options, compile};
+use crate::report::Kind;
+
+/// Bakes all documents; one that fails does not stop the others.
+pub(crate) fn run(bake: &Bake, printer: &Printer) -> Outcome {
+    let Some(tasks) = tasks(&bake.documents, printer) else { return Outcome::Files };
+    if let Some(message) = same_name(&tasks) {
+        printer.failure(&message, Some("bake them in separate runs with different --out folders"));
+        return Outcome::Usage;
+    }
+    if let Err(error) = std::fs::create_dir_all(&bake.out) {
+        let message = format!("cannot make the output folder {}: {}", bake.out.display(), reason(&error));
+        printer.failure(&message, None);
+        return Outcome::Files;
+    }
+    let progress = progress(tasks.len(), printer);
+    let worker = Worker { bake, printer, progress: &progress, turn: Mutex::new(Turns::default()) };
+    let outcome = if let [task] = tasks.as_slice() {
+        // Waking a second thread costs more than a small document takes.
+        worker.work(0, task)
+    } else {
+        in_parallel(bake, &tasks, &worker)
+    };
+    progress.finish_and_clear();
+    outcome
+}
+
+fn in_parallel(bake: &Bake, tasks: &[Task], worker: &Worker<'_>) -> Outcome {
+    let numbered: Vec<(usize, &Task)> = tasks.iter().enumerate().collect();
+    let all = || numbered.par_iter().map(|(index, task)| worker.work(*index, task)).max().unwrap_or(Outcome::Good);
+    let threads = bake.documents.jobs.map_or(0, usize::from);
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(all),
+        Err(_) => numbered.iter().map(|(index, task)| worker.work(*index, task)).max().unwrap_or(Outcome::Good),
+    }
+}
+
+/// Two documents whose outputs would be one file.
+fn same_name(tasks: &[Task]) -> Option<String> {
+    let mut seen: BTreeMap<String, &Task> = BTreeMap::new();
+    for task in tasks {
+        // Some file systems do not tell upper case from lower.
+        if let Some(other) = seen.insert(task.output.to_lowercase(), task) {
+            return Some(format!("{} and {} would both be written to {}.glb", other.path, task.path, task.output));
+        }
+    }
+    None
+}
+
+fn progress(count: usize, printer: &Printer) -> ProgressBar {
+    if count < 2 || !printer.draws_progress() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::with_draw_target(Some(count as u64), ProgressDrawTarget::stderr_with_hz(10));
+    if let Ok(style) = ProgressStyle::with_template("{bar:32} {pos}/{len} {wide_msg}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// What a document's work has to say, and to whom.
+enum Message {
+    Result(String, serde_json::Value),
+    Diagnostics(crate::language::diagnostic::Diagnostics),
+    Failure(String),
+}
+
+/// Messages wait for their turn, so that they are printed in the order of the documents.
+#[derive(Default)]
+struct Turns {
+    next: usize,
+    waiting: BTreeMap<usize, Vec<Message>>,
+}
+
+struct Worker<'a> {
+    bake: &'a Bake,
+    printer: &'a Printer,
+    progress: &'a ProgressBar,
+    turn: Mutex<Turns>,
+}
+
+impl Worker<'_> {
+    fn work(&self, index: usize, task: &Task) -> Outcome {
+        self.progress.set_message(task.path.clone());
+        let mut messages = Vec::new();
+        let outcome = catch_unwind(AssertUnwindSafe(|| self.document(task, &mut messages))).unwrap_or_else(|_| {
+            messages.push(Message::Failure(format!(
+                "{}: Kiln failed inside; please report this document as a bug",
+                task.path
+            )));
+            Outcome::Errors
+        });
+        self.speak(index, messages);
+        self.progress.inc(1);
+        outcome
+    }
+
+    fn speak(&self, index: usize, messages: Vec<Message>) {
+        let Ok(mut turns) = self.turn.lock() else { return };
+        turns.waiting.insert(index, messages);
+        loop {
+            let next = turns.next;
+            let Some(messages) = turns.waiting.remove(&next) else { return };
+            turns.next += 1;
+            self.progress.suspend(|| messages.iter().for_each(|message| self.print(message)));
+        }
+    }
+
+    fn print(&self, message: &Message) {
+        match message {
+            Message::Result(text, object) => self.printer.result(text, object),
+            Message::Diagnostics(list) => self.printer.diagnostics(list),
+            Message::Failure(text) => self.printer.failure(text, None),
+        }
+    }
+
+    /// Bakes a document and its variants.
+    fn document(&self, task: &Task, messages: &mut Vec<Message>) -> Outcome {
+        let (files, document) = match task.load() {
+            Ok(loaded) => loaded,
+            Err(error) => {
+                messages.push(Message::Failure(format!("{}: {}", task.path, reason(&error))));
+                return Outcome::Files;
+            }
+        };
+        let document = match document {
+            Ok(document) => document,
+            Err(list) => {
+                messages.push(Message::Diagnostics(list));
+                return Outcome::Errors;
+            }
+        };
+        if task.found && document.is_library() {
+            if self.printer.verbose {
+                let text = format!("passed over {}: it defines nothing to show", task.path);
+                messages.push(Message::Result(text, json!({ "skipped": task.path })));
+            }
+            return Outcome::Good;
+        }
+        let mut outcome = Outcome::Good;
+        let variants = std::iter::once(None).chain(document.variants().into_iter().map(Some));
+        for variant in variants {
+            let options = Options {
+                variant,
+                overrides: self.bake.documents.set.clone(),
+                name: task.name().to_owned(),
+                path: task.path.clone(),
+                no_report: self.bake.no_report,
+                measure: self.bake.measure,
+            };
+            outcome = outcome.max(match compile(&document, &files, &options) {
+                Ok(compiled) => self.write(task, compiled, messages),
+                Err(list) => {
+                    messages.push(Message::Diagnostics(list));
+                    Outcome::Errors
+                }
+            });
+        }
+        outcome
+    }
+
+    fn write(&self, task: &Task, compiled: Compiled, messages: &mut Vec<Message>) -> Outcome {
+        let folder = match task.output.rsplit_once('/') {
+            Some((folder, _)) => self.bake.out.join(folder),
+            None => self.bake.out.clone(),
+        };
+        let target = folder.join(&compiled.file);
+        if let Err(error) = save(&folder, &compiled) {
+            messages.push(Message::Failure(format!("cannot write {}: {}", target.display(), reason(&error))));
+            return Outcome::Files;
+        }
+        let object = json!({
+            "asset": target.display().to_string(),
+            "spec": task.path,
+            "bytes": compiled.bytes.len(),
+            "triangles": compiled.report.as_ref().map(|report| report.totals.triangles),
+        });
+        messages.push(Message::Result(line(&target, &compiled), object));
+        if !compiled.warnings.is_empty() {
+            messages.push(Message::Diagnostics(compiled.warnings));
+        }
+        Outcome::Good
+    }
+}
+
+fn line(target: &Path, compiled: &Compiled) -> String {
+    let bytes = size(compiled.bytes.len());
+    let Some(report) = &compiled.report else { return format!("{}  {bytes}", target.display()) };
+    let deviations = report.shapes.values().map(|shape| shape.deviation);
+    let worst = deviations.max_by(|a, b| a.bound.total_cmp(&b.bound));
+    let accuracy = worst.map_or_else(String::new, |deviation| {
+        let how = match deviation.kind {
+            Kind::Exact => "exact".to_owned(),
+            Kind::Proved => format!("within {} (proved)", metres(deviation.bound)),
+            Kind::Sampled => format!("within {} (sampled)", metres(deviation.bound)),
+        };
+        let measured = deviation.measured.map_or_else(String::new, |found| format!(", measured {}", metres(found)));
+        format!("  {how}{measured}")
+    });
+    format!("{}  {} triangles  {bytes}{accuracy}", target.display(), report.totals.triangles)
+}
+
+/// A length for people.
+fn metres(length: f64) -> String {
+    match length {
+        _ if length >= 1.0 => format!("{length:.3} m"),
+        _ if length >= 1e-3 => format!("{:.3} mm", length * 1e3),
+        _ => format!("{:.3} um", length * 1e6),
+    }
+}
+
+fn size(bytes: usize) -> String {
+    match bytes as f64 {
+        bytes if bytes >= 1e6 => format!("{:.1} MB", bytes / 1e6),
+        bytes if bytes >= 1e3 => format!("{:.1} kB", bytes / 1e3),
+        bytes => format!("{bytes} B"),
+    }
+}
+
+/// Writes the file and its report under temporary names, then gives both their own: a reader sees the old
+/// files or the new ones, whole.
+fn save(folder: &Path, compiled: &Compiled) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    let mut waiting: Vec<(tempfile::NamedTempFile, PathBuf)> = Vec::new();
+    let mut put = |name: &str, bytes: &[u8]| -> std::io::Result<()> {
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".kiln-");
+        let mut file = builder.tempfile_in(folder)?;
+        file.write_all(bytes)?;
+        waiting.push((file, folder.join(name)));
+        Ok(())
+    };
+    put(&compiled.file, &compiled.bytes)?;
+    let report_name = format!("{}.report.json", compiled.file.trim_end_matches(".glb"));
+    if let Some(report) = &compiled.report {
+        let mut text = serde_json::to_vec_pretty(report)?;
+        text.push(b'\n');
+        put(&report_name, &text)?;
+    }
+    for (file, target) in waiting {
+        readable(file.as_file())?;
+        file.persist(target).map_err(|error| error.error)?;
+    }
+    Ok(())
+}
+
+/// Temporary files are for their owner alone; outputs are for all, as the system's mask has it.
+#[cfg(unix)]
+fn readable(file: &std::fs::File) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt as _;
+    file.set_permissions(std::fs::Permissions::from_mode(0o644))
+}
+
+#[cfg(not(unix))]
+fn readable(_: &std::fs::File) -> std::io::Result<()> {
+    Ok(())
+}

@@ -1,0 +1,51 @@
+//! What the program says of itself: schema, reference, codes, completions.
+
+use clap::CommandFactory as _;
+use serde_json::json;
+
+use super::Outcome;
+use super::arguments::{Arguments, Completions, Explain, Format};
+use super::output::Printer;
+use crate::language::diagnostic::Code;
+
+pub(crate) fn schema(printer: &Printer) -> Outcome {
+    let schema = crate::language::schema();
+    match serde_json::to_string_pretty(&schema) {
+        Ok(text) => printer.raw(&format!("{text}\n")),
+        Err(error) => printer.failure(&error.to_string(), None),
+    }
+    Outcome::Good
+}
+
+pub(crate) fn reference(printer: &Printer) -> Outcome {
+    printer.raw(&crate::language::reference());
+    Outcome::Good
+}
+
+pub(crate) fn explain(explain: &Explain, printer: &Printer) -> Outcome {
+    let Some(text) = &explain.code else {
+        for code in Code::ALL {
+            printer.result(&format!("{code}  {}", code.title()), &json!({ "code": code.text(), "title": code.title() }));
+        }
+        return Outcome::Good;
+    };
+    let Some(code) = Code::parse(text) else {
+        printer.failure(&format!("there is no code `{text}`"), Some("`kiln explain` lists all codes"));
+        return Outcome::Usage;
+    };
+    let explanation = crate::language::explain(code);
+    match printer.format {
+        Format::Text => printer.raw(&format!("{}\n", explanation.trim_end())),
+        Format::Json => {
+            let object = json!({ "code": code.text(), "title": code.title(), "explanation": explanation });
+            printer.raw(&format!("{object}\n"));
+        }
+    }
+    Outcome::Good
+}
+
+pub(crate) fn completions(completions: &Completions) -> Outcome {
+    let mut command = Arguments::command();
+    clap_complete::generate(completions.shell, &mut command, "kiln", &mut std::io::stdout());
+    Outcome::Good
+}

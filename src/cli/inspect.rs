@@ -1,0 +1,54 @@
+//! `kiln inspect`: what is in a `.glb` file, measured on its bytes.
+
+use serde_json::{Value, json};
+
+use super::Outcome;
+use super::arguments::{Format, Inspect};
+use super::output::Printer;
+use super::project::reason;
+use crate::gltf;
+use crate::report::facts;
+
+pub(crate) fn run(inspect: &Inspect, printer: &Printer) -> Outcome {
+    let bytes = match std::fs::read(&inspect.file) {
+        Ok(bytes) => bytes,
+        Err(error) => {
+            printer.failure(&format!("{}: {}", inspect.file.display(), reason(&error)), None);
+            return Outcome::Files;
+        }
+    };
+    let file = match gltf::read(&bytes) {
+        Ok(file) => file,
+        Err(error) => {
+            printer.failure(&format!("{}: {error}", inspect.file.display()), None);
+            return Outcome::Errors;
+        }
+    };
+    let mut meshes = serde_json::Map::new();
+    for (index, geometry) in file.geometries.iter().enumerate() {
+        let name = file.root.meshes[index].name.clone().unwrap_or_else(|| format!("mesh {index}"));
+        let facts = match facts::measure(&geometry.positions, &geometry.indices) {
+            Ok(facts) => serde_json::to_value(facts).unwrap_or(Value::Null),
+            Err(error) => Value::from(error.to_string()),
+        };
+        meshes.insert(name, facts);
+    }
+    let object = json!({
+        "file": inspect.file.display().to_string(),
+        "bytes": bytes.len(),
+        "blake3": blake3::hash(&bytes).to_hex().to_string(),
+        "generator": file.root.asset.generator,
+        "nodes": file.root.nodes.len(),
+        "materials": file.root.materials.len(),
+        "images": file.root.images.len(),
+        "meshes": meshes,
+    });
+    match printer.format {
+        Format::Json => printer.raw(&format!("{object}\n")),
+        Format::Text => {
+            let text = serde_json::to_string_pretty(&object).unwrap_or_default();
+            printer.raw(&format!("{text}\n"));
+        }
+    }
+    Outcome::Good
+}

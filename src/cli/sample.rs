@@ -1,0 +1,148 @@
+//! `kiln sample`: points and derivatives as JSON, so that anyone can check the mathematics from outside.
+
+use glam::DVec3;
+use serde_json::{Value, json};
+
+use super::Outcome;
+use super::arguments::Sample;
+use super::output::Printer;
+use super::project::{reason, task};
+use crate::compile::{self, Options};
+use crate::geometry::curve::{Curve, Domain, Side, length};
+use crate::geometry::surface::{ExtrudedSurface, RevolvedSurface, Surface, SweptSurface};
+use crate::model::{Model, Recipe};
+
+pub(crate) fn run(sample: &Sample, printer: &Printer) -> Outcome {
+    let task = match task(&sample.file) {
+        Ok(task) => task,
+        Err(message) => {
+            printer.failure(&message, None);
+            return Outcome::Files;
+        }
+    };
+    let (files, document) = match task.load() {
+        Ok(loaded) => loaded,
+        Err(error) => {
+            printer.failure(&format!("{}: {}", task.path, reason(&error)), None);
+            return Outcome::Files;
+        }
+    };
+    let options = Options { overrides: sample.set.clone(), name: task.name().to_owned(), ..Options::default() };
+    let found = document.and_then(|document| match (&sample.curve, &sample.shape) {
+        (Some(name), _) => {
+            compile::curve(&document, &files, &options, name).map(|curve| of_curve(name, curve.as_ref(), sample))
+        }
+        (None, Some(name)) => {
+            compile::model(&document, &files, &options).map(|model| of_shape(name, &model, sample))
+        }
+        (None, None) => Ok(Err("name a curve or a shape".to_owned())),
+    });
+    match found {
+        Ok(Ok(object)) => {
+            printer.raw(&format!("{object}\n"));
+            Outcome::Good
+        }
+        Ok(Err(message)) => {
+            printer.failure(&message, None);
+            Outcome::Usage
+        }
+        Err(list) => {
+            printer.diagnostics(&list);
+            Outcome::Errors
+        }
+    }
+}
+
+fn numbers(vector: DVec3) -> Value {
+    json!(vector.to_array())
+}
+
+fn of_curve(name: &str, curve: Option<&crate::geometry::curve::AnyCurve>, sample: &Sample) -> Result<Value, String> {
+    let curve = curve.ok_or_else(|| format!("there is no curve `{name}`"))?;
+    let domain = curve.domain();
+    let places = if sample.at.is_empty() {
+        (0..=sample.count).map(|k| domain.at(f64::from(k) / f64::from(sample.count))).collect()
+    } else {
+        sample.at.iter().map(|text| parameter(text, domain)).collect::<Result<Vec<_>, _>>()?
+    };
+    let points: Vec<Value> = places
+        .iter()
+        .map(|t| {
+            let jet = curve.evaluate(*t, if *t >= domain.end { Side::Before } else { Side::After });
+            json!({ "t": t, "point": numbers(jet.point), "first": numbers(jet.first), "second": numbers(jet.second) })
+        })
+        .collect();
+    Ok(json!({
+        "curve": name,
+        "domain": [domain.start, domain.end],
+        "closed": curve.is_closed(),
+        "length": length(curve),
+        "joints": curve.joints(),
+        "samples": points,
+    }))
+}
+
+fn parameter(text: &str, domain: Domain) -> Result<f64, String> {
+    let t: f64 = text.trim().parse().map_err(|_| format!("`{text}` is not a number"))?;
+    if t >= domain.start && t <= domain.end {
+        Ok(t)
+    } else {
+        Err(format!("{t} lies outside the domain, {} to {}", domain.start, domain.end))
+    }
+}
+
+fn of_shape(name: &str, model: &Model, sample: &Sample) -> Result<Value, String> {
+    let shape = model.shapes.iter().find(|shape| shape.name == name);
+    let shape = shape.ok_or_else(|| {
+        let known: Vec<&str> = model.shapes.iter().map(|shape| shape.name.as_str()).collect();
+        format!("there is no shape `{name}`; there is: {}", known.join(", "))
+    })?;
+    let surface: Box<dyn Surface> = match &shape.recipe {
+        Recipe::Revolution(revolution) => Box::new(RevolvedSurface {
+            profile: revolution.profile.clone(),
+            start: revolution.start,
+            angle: revolution.angle,
+        }),
+        Recipe::Extrusion(extrusion) => Box::new(ExtrudedSurface {
+            profile: extrusion.outlines[0].clone(),
+            bottom: extrusion.bottom,
+            height: extrusion.height,
+        }),
+        Recipe::Sweep(sweep) => {
+            Box::new(SweptSurface::new(sweep.profile.clone(), sweep.path.clone(), sweep.twist))
+        }
+        _ => return Err(format!("shape `{name}` has no surface with parameters u and v")),
+    };
+    let (domain_u, domain_v) = (surface.domain_u(), surface.domain_v());
+    let places = surface_places(sample, domain_u, domain_v)?;
+    let points: Vec<Value> = places
+        .iter()
+        .map(|(u, v)| {
+            let jet = surface.evaluate(*u, *v);
+            json!({
+                "u": u, "v": v,
+                "point": numbers(jet.point), "du": numbers(jet.du), "dv": numbers(jet.dv),
+                "normal": numbers(jet.normal),
+            })
+        })
+        .collect();
+    Ok(json!({
+        "shape": name,
+        "domain-u": [domain_u.start, domain_u.end],
+        "domain-v": [domain_v.start, domain_v.end],
+        "samples": points,
+    }))
+}
+
+fn surface_places(sample: &Sample, u: Domain, v: Domain) -> Result<Vec<(f64, f64)>, String> {
+    if sample.at.is_empty() {
+        let count = sample.count.min(4096);
+        let part = |k: u32| f64::from(k) / f64::from(count);
+        return Ok((0..=count).flat_map(|i| (0..=count).map(move |j| (u.at(part(i)), v.at(part(j))))).collect());
+    }
+    let pair = |text: &String| {
+        let (first, second) = text.split_once(',').ok_or_else(|| format!("`{text}` is not U,V"))?;
+        Ok((parameter(first, u)?, parameter(second, v)?))
+    };
+    sample.at.iter().map(pair).collect()
+}
