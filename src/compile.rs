@@ -3,8 +3,8 @@
 use crate::build::{self, Built};
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::tessellate::{Evidence, TessellateError};
-use crate::language::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::language::Document;
+use crate::language::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::language::source::{Files, Span};
 use crate::language::spec::{Assertion, Demand, Expected, Spec};
 use crate::model::{Model, ShapeHandle};
@@ -141,7 +141,8 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
 
 fn noticed(built: &Built, shape: ShapeHandle, note: &str) -> Diagnostic {
     let name = &built.model.shape(shape).name;
-    Diagnostic::warning(Code::ImportNote, format!("shape `{name}`: {note}")).at(place(built, shape), "this shape")
+    Diagnostic::warning(Code::ImportNote, format!("shape `{name}`: {note}"))
+        .at(place(built, shape), "this shape")
 }
 
 /// Shapes whose bound could not be brought under their tolerance.
@@ -209,7 +210,8 @@ fn assert(report: &Report, assertion: &Assertion) -> Result<Check, Box<Diagnosti
         let message = format!("the report has no `{}`, asked for by `{path}`", fault.missing);
         let known = fault.known.iter().map(String::as_str);
         let near = crate::language::spec::closest(&fault.missing, known).map(str::to_owned);
-        let mut report = Diagnostic::error(Code::UnknownFact, message).at(assertion.path.span, "no such fact");
+        let mut report =
+            Diagnostic::error(Code::UnknownFact, message).at(assertion.path.span, "no such fact");
         if !fault.known.is_empty() {
             report = report.note(format!("there is: {}", fault.known.join(", ")));
         }
@@ -223,7 +225,9 @@ fn assert(report: &Report, assertion: &Assertion) -> Result<Check, Box<Diagnosti
         return Ok(Check { path: path.clone(), found });
     }
     let message = format!("assertion failed: `{path}` is {found}, not {demand}");
-    Err(Box::new(Diagnostic::error(Code::AssertionFailed, message).at(assertion.span, format!("found {found}"))))
+    Err(Box::new(
+        Diagnostic::error(Code::AssertionFailed, message).at(assertion.span, format!("found {found}")),
+    ))
 }
 
 fn holds(demand: &Demand, found: &serde_json::Value) -> bool {

@@ -7,7 +7,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 /// Bakes model specs (TOML) into glTF.
 #[derive(Debug, Parser)]
 #[command(name = "kiln", version, about, max_term_width = 100)]
-#[command(after_help = "Exit codes: 0 all went well, 1 errors in documents, 2 wrong usage, 3 files that cannot be read or written.")]
+#[command(
+    after_help = "Exit codes: 0 all went well, 1 errors in documents, 2 wrong usage, 3 files that cannot be read or written."
+)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     pub(crate) common: Common,
@@ -161,7 +163,9 @@ pub(crate) struct Completions {
 
 fn assignment(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
-        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().to_owned(), value.trim().to_owned())),
+        Some((name, value)) if !name.trim().is_empty() => {
+            Ok((name.trim().to_owned(), value.trim().to_owned()))
+        }
         _ => Err("write NAME=VALUE, as in `height=0.3`".to_owned()),
     }
 }

@@ -43,11 +43,14 @@ pub(crate) fn run(bake: &Bake, printer: &Printer) -> Outcome {
 
 fn in_parallel(bake: &Bake, tasks: &[Task], worker: &Worker<'_>) -> Outcome {
     let numbered: Vec<(usize, &Task)> = tasks.iter().enumerate().collect();
-    let all = || numbered.par_iter().map(|(index, task)| worker.work(*index, task)).max().unwrap_or(Outcome::Good);
+    let all =
+        || numbered.par_iter().map(|(index, task)| worker.work(*index, task)).max().unwrap_or(Outcome::Good);
     let threads = bake.documents.jobs.map_or(0, usize::from);
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool.install(all),
-        Err(_) => numbered.iter().map(|(index, task)| worker.work(*index, task)).max().unwrap_or(Outcome::Good),
+        Err(_) => {
+            numbered.iter().map(|(index, task)| worker.work(*index, task)).max().unwrap_or(Outcome::Good)
+        }
     }
 }
 
@@ -57,7 +60,10 @@ fn same_name(tasks: &[Task]) -> Option<String> {
     for task in tasks {
         // Some file systems do not tell upper case from lower.
         if let Some(other) = seen.insert(task.output.to_lowercase(), task) {
-            return Some(format!("{} and {} would both be written to {}.glb", other.path, task.path, task.output));
+            return Some(format!(
+                "{} and {} would both be written to {}.glb",
+                other.path, task.path, task.output
+            ));
         }
     }
     None
@@ -99,13 +105,14 @@ impl Worker<'_> {
     fn work(&self, index: usize, task: &Task) -> Outcome {
         self.progress.set_message(task.path.clone());
         let mut messages = Vec::new();
-        let outcome = catch_unwind(AssertUnwindSafe(|| self.document(task, &mut messages))).unwrap_or_else(|_| {
-            messages.push(Message::Failure(format!(
-                "{}: Kiln failed inside; please report this document as a bug",
-                task.path
-            )));
-            Outcome::Errors
-        });
+        let outcome =
+            catch_unwind(AssertUnwindSafe(|| self.document(task, &mut messages))).unwrap_or_else(|_| {
+                messages.push(Message::Failure(format!(
+                    "{}: Kiln failed inside; please report this document as a bug",
+                    task.path
+                )));
+                Outcome::Errors
+            });
         self.speak(index, messages);
         self.progress.inc(1);
         outcome
@@ -210,7 +217,8 @@ fn line(target: &Path, compiled: &Compiled) -> String {
             Kind::Proved => format!("within {} (proved)", metres(deviation.bound)),
             Kind::Sampled => format!("within {} (sampled)", metres(deviation.bound)),
         };
-        let measured = deviation.measured.map_or_else(String::new, |found| format!(", measured {}", metres(found)));
+        let measured =
+            deviation.measured.map_or_else(String::new, |found| format!(", measured {}", metres(found)));
         format!("  {how}{measured}")
     });
     format!("{}  {} triangles  {bytes}{accuracy}", target.display(), report.totals.triangles)

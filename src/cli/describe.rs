@@ -25,7 +25,10 @@ pub(crate) fn reference(printer: &Printer) -> Outcome {
 pub(crate) fn explain(explain: &Explain, printer: &Printer) -> Outcome {
     let Some(text) = &explain.code else {
         for code in Code::ALL {
-            printer.result(&format!("{code}  {}", code.title()), &json!({ "code": code.text(), "title": code.title() }));
+            printer.result(
+                &format!("{code}  {}", code.title()),
+                &json!({ "code": code.text(), "title": code.title() }),
+            );
         }
         return Outcome::Good;
     };

@@ -69,7 +69,8 @@ impl Printer {
                 self.complain(&format!("error: {message}{help}\n"));
             }
             Format::Json => {
-                let object = json!({ "diagnostic": { "severity": "error", "message": message, "help": help } });
+                let object =
+                    json!({ "diagnostic": { "severity": "error", "message": message, "help": help } });
                 self.raw(&format!("{object}\n"));
             }
         }

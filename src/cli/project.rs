@@ -22,7 +22,9 @@ pub(crate) struct Task {
 
 impl Task {
     /// Loads the document.
-    pub(crate) fn load(&self) -> std::io::Result<(DiskFiles, Result<Document, crate::language::diagnostic::Diagnostics>)> {
+    pub(crate) fn load(
+        &self,
+    ) -> std::io::Result<(DiskFiles, Result<Document, crate::language::diagnostic::Diagnostics>)> {
         let files = DiskFiles::new(&self.root)?;
         let document = Document::load(&self.path, &files as &dyn Files);
         Ok((files, document))
@@ -67,7 +69,9 @@ fn collect(path: &Path, root: Option<&Path>) -> Result<Vec<Task>, String> {
     let explain = |error: std::io::Error| format!("{}: {}", path.display(), reason(&error));
     let real = path.canonicalize().map_err(explain)?;
     let root = match root {
-        Some(root) => root.canonicalize().map_err(|error| format!("{}: {}", root.display(), reason(&error)))?,
+        Some(root) => {
+            root.canonicalize().map_err(|error| format!("{}: {}", root.display(), reason(&error)))?
+        }
         None => default_root(&real)?,
     };
     if !real.starts_with(&root) {
@@ -82,7 +86,10 @@ fn collect(path: &Path, root: Option<&Path>) -> Result<Vec<Task>, String> {
     };
     files.sort();
     let slashes = |path: &Path| {
-        path.components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect::<Vec<_>>().join("/")
+        path.components()
+            .map(|part| part.as_os_str().to_string_lossy().into_owned())
+            .collect::<Vec<_>>()
+            .join("/")
     };
     Ok(files
         .iter()

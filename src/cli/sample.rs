@@ -27,11 +27,11 @@ pub(crate) fn run(sample: &Sample, printer: &Printer) -> Outcome {
             return Outcome::Files;
         }
     };
-    let options = Options { overrides: sample.set.clone(), name: task.name().to_owned(), ..Options::default() };
+    let options =
+        Options { overrides: sample.set.clone(), name: task.name().to_owned(), ..Options::default() };
     let found = document.and_then(|document| match (&sample.curve, &sample.shape) {
-        (Some(name), _) => {
-            compile::curve(&document, &files, &options, name).map(|curve| of_curve(name, curve.as_ref(), sample))
-        }
+        (Some(name), _) => compile::curve(&document, &files, &options, name)
+            .map(|curve| of_curve(name, curve.as_ref(), sample)),
         (None, Some(name)) => {
             compile::model(&document, &files, &options).map(|model| of_shape(name, &model, sample))
         }
@@ -57,7 +57,11 @@ fn numbers(vector: DVec3) -> Value {
     json!(vector.to_array())
 }
 
-fn of_curve(name: &str, curve: Option<&crate::geometry::curve::AnyCurve>, sample: &Sample) -> Result<Value, String> {
+fn of_curve(
+    name: &str,
+    curve: Option<&crate::geometry::curve::AnyCurve>,
+    sample: &Sample,
+) -> Result<Value, String> {
     let curve = curve.ok_or_else(|| format!("there is no curve `{name}`"))?;
     let domain = curve.domain();
     let places = if sample.at.is_empty() {
@@ -138,7 +142,9 @@ fn surface_places(sample: &Sample, u: Domain, v: Domain) -> Result<Vec<(f64, f64
     if sample.at.is_empty() {
         let count = sample.count.min(4096);
         let part = |k: u32| f64::from(k) / f64::from(count);
-        return Ok((0..=count).flat_map(|i| (0..=count).map(move |j| (u.at(part(i)), v.at(part(j))))).collect());
+        return Ok((0..=count)
+            .flat_map(|i| (0..=count).map(move |j| (u.at(part(i)), v.at(part(j)))))
+            .collect());
     }
     let pair = |text: &String| {
         let (first, second) = text.split_once(',').ok_or_else(|| format!("`{text}` is not U,V"))?;

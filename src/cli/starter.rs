@@ -31,7 +31,10 @@ pub(crate) fn run(new: &New, printer: &Printer) -> Outcome {
             Outcome::Good
         }
         Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
-            printer.failure(&format!("{file} is there already"), Some("choose another name; nothing was changed"));
+            printer.failure(
+                &format!("{file} is there already"),
+                Some("choose another name; nothing was changed"),
+            );
             Outcome::Files
         }
         Err(error) => {

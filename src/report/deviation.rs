@@ -30,7 +30,12 @@ const SAMPLES: [[f64; 3]; 13] = [
 /// for its nearest point in the range of parameters that its triangle's corners span, so the result is local:
 /// a sheet that lies near by does not hide a gap.
 #[must_use]
-pub fn measure_deviation(geometry: &Geometry, known: &WrittenGeometry, model: &Model, handle: ShapeHandle) -> f64 {
+pub fn measure_deviation(
+    geometry: &Geometry,
+    known: &WrittenGeometry,
+    model: &Model,
+    handle: ShapeHandle,
+) -> f64 {
     let sources = sources(model, handle);
     if !sources.curved() || known.anchors.len() != geometry.positions.len() {
         return 0.0;
@@ -49,8 +54,7 @@ fn of_triangle(triangle: &[u32], geometry: &Geometry, anchors: &[Anchor], source
     let Some(source) = sources.get(corners[0].source) else { return 0.0 };
     let least = |of: fn(&Anchor) -> f64| corners.iter().map(of).fold(f64::INFINITY, f64::min);
     let most = |of: fn(&Anchor) -> f64| corners.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
-    let window =
-        Window { low: (least(|a| a.u), least(|a| a.v)), high: (most(|a| a.u), most(|a| a.v)) };
+    let window = Window { low: (least(|a| a.u), least(|a| a.v)), high: (most(|a| a.u), most(|a| a.v)) };
     let places = [0, 1, 2].map(|corner| {
         let [x, y, z] = geometry.positions[triangle[corner] as usize].map(f64::from);
         DVec3::new(x, y, z)

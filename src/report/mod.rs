@@ -190,7 +190,8 @@ pub fn measure(
     let file = read(&written.bytes)?;
     let mut facts = IndexMap::new();
     for (known, handle) in written.geometries.iter().zip(shapes) {
-        let measured = about.measure.then(|| measure_deviation(&file.geometries[known.mesh], known, model, *handle));
+        let measured =
+            about.measure.then(|| measure_deviation(&file.geometries[known.mesh], known, model, *handle));
         facts.insert(known.name.clone(), shape_facts(&file, known, (model, *handle), measured)?);
     }
     let nodes = nodes(&file);
@@ -269,9 +270,8 @@ fn nodes(file: &Read) -> Vec<NodeFacts> {
 }
 
 fn local(node: &gltf::json::Node) -> glam::DMat4 {
-    let vector = |value: Option<[f32; 3]>, rest: f32| {
-        glam::Vec3::from_array(value.unwrap_or([rest; 3])).as_dvec3()
-    };
+    let vector =
+        |value: Option<[f32; 3]>, rest: f32| glam::Vec3::from_array(value.unwrap_or([rest; 3])).as_dvec3();
     let rotation = node.rotation.map_or([0.0, 0.0, 0.0, 1.0], |rotation| rotation.0);
     glam::DMat4::from_scale_rotation_translation(
         vector(node.scale, 1.0),
@@ -280,7 +280,12 @@ fn local(node: &gltf::json::Node) -> glam::DMat4 {
     )
 }
 
-fn totals(file: &Read, shapes: &IndexMap<String, ShapeFacts>, written: &Written, nodes: &[NodeFacts]) -> Totals {
+fn totals(
+    file: &Read,
+    shapes: &IndexMap<String, ShapeFacts>,
+    written: &Written,
+    nodes: &[NodeFacts],
+) -> Totals {
     let mut totals = Totals {
         meshes: file.root.meshes.len(),
         materials: file.root.materials.len(),

@@ -34,3 +34,26 @@ pub fn distance_within(curve: &impl Curve, point: DVec3, from: f64, to: f64) -> 
     }
     nearest.sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::distance_within;
+    use crate::geometry::curve::EllipseArc;
+    use crate::geometry::number::{cos_degrees, sin_degrees};
+
+    #[test]
+    fn distance_to_an_arc_is_that_to_the_circle() {
+        let arc = EllipseArc::circle(DVec3::ZERO, 0.5, -90.0, 90.0);
+        for k in 0..=40 {
+            for radius in [0.49, 0.4999, 0.5, 0.501] {
+                let angle = -90.0 + 4.5 * f64::from(k);
+                let point = DVec3::new(cos_degrees(angle), sin_degrees(angle), 0.0) * radius;
+                let place = f64::from(k) / 40.0;
+                let found = distance_within(&arc, point, (place - 0.05).max(0.0), (place + 0.03).min(1.0));
+                assert!((found - (radius - 0.5).abs()).abs() < 1e-12, "{angle} {radius} {found}");
+            }
+        }
+    }
+}

@@ -50,9 +50,8 @@ fn details() -> Vec<Detail> {
         SurfaceDensity::Grid { u: 7, v: 9 },
         SurfaceDensity::Grid { u: 32, v: 16 },
     ];
-    let both = |density| {
-        [false, true].map(|uv| Detail { density, crease_angle: 30.0, uv, triangle_limit: 1 << 24 })
-    };
+    let both =
+        |density| [false, true].map(|uv| Detail { density, crease_angle: 30.0, uv, triangle_limit: 1 << 24 });
     densities.into_iter().flat_map(both).collect()
 }
 
@@ -90,7 +89,11 @@ fn check(name: &str, made: &Tessellation, detail: &Detail, closed: bool) {
         assert!(across.length() > 0.0, "{name} {detail:?}: a triangle has no area");
         for vertex in corners {
             assert!((vertex.normal.length() - 1.0).abs() < 1e-9, "{name} {detail:?}");
-            assert!(vertex.normal.dot(across.normalize()) > 0.0, "{name} {detail:?} at {a} {b} {c}: {}", vertex.normal);
+            assert!(
+                vertex.normal.dot(across.normalize()) > 0.0,
+                "{name} {detail:?} at {a} {b} {c}: {}",
+                vertex.normal
+            );
             assert!(vertex.uv.cmpge(DVec2::ZERO).all() && vertex.uv.cmple(DVec2::ONE).all(), "{name}");
         }
     }
@@ -154,10 +157,14 @@ fn a_sphere_needs_few_triangles_and_meets_its_bound() {
 #[test]
 fn extrusions_keep_the_laws() {
     let outline = [(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (2.0, 1.0), (0.0, 3.0)];
-    let round = bezier(&[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0), (-3.0, 3.0), (-3.0, 0.0), (0.0, 0.0)]);
+    let round =
+        bezier(&[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0), (-3.0, 3.0), (-3.0, 0.0), (0.0, 0.0)]);
     let cases = [
         ("arrow", vec![polyline(&outline, true)]),
-        ("clockwise", vec![AnyCurve::Reversed(crate::geometry::curve::Reversed::new(polyline(&outline, true)))]),
+        (
+            "clockwise",
+            vec![AnyCurve::Reversed(crate::geometry::curve::Reversed::new(polyline(&outline, true)))],
+        ),
         ("disc with two holes", vec![circle(0.0, 0.0, 3.0), circle(1.5, 0.0, 1.0), circle(-1.5, 0.0, 1.0)]),
         ("blob", vec![round]),
     ];
@@ -190,7 +197,9 @@ fn sweeps_keep_the_laws() {
         ("corner", polyline(&frame[..3], false), false),
         ("line", polyline(&frame[..2], false), false),
     ];
-    for (section_name, profile, solid) in [("tube", section, true), ("bar", bar, true), ("strip", strip, false)] {
+    for (section_name, profile, solid) in
+        [("tube", section, true), ("bar", bar, true), ("strip", strip, false)]
+    {
         for (path_name, path, _) in &paths {
             for twist in [0.0, 90.0] {
                 for detail in details() {
