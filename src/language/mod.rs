@@ -7,4 +7,6 @@ pub mod source;
 pub mod spec;
 pub mod value;
 
+pub use diagnostic::explain;
 pub use document::Document;
+pub use spec::{Spec, reference, schema};

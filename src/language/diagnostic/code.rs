@@ -49,6 +49,8 @@ codes! {
     TooDeep = "K0006";
     /// a document is too large
     TooLarge = "K0007";
+    /// a bracket is never closed
+    Unclosed = "K0008";
 
     /// a table has a key that it does not know
     UnknownField = "K0101";

@@ -1,11 +1,13 @@
 //! What is wrong with a document, as data: place, message, hint. Rendering is apart.
 
 mod code;
+mod explain;
 mod json;
 mod list;
 mod render;
 
 pub use code::Code;
+pub use explain::{Example, example, explain};
 pub use list::Diagnostics;
 
 use crate::language::source::Span;

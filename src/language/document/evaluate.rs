@@ -40,7 +40,10 @@ pub(crate) fn evaluate(
         tree.value(&mut entry.value);
     }
     found.append(&mut parameters.found);
-    found.extend(unused(&written, &parameters, variants, overrides, sources));
+    if found.is_empty() {
+        // An expression that could not be read uses its parameters all the same.
+        found.extend(unused(&written, &parameters, variants, overrides, sources));
+    }
     found
 }
 

@@ -125,6 +125,13 @@ impl Document {
                 | Code::NothingToBake
         );
         let here = line(one);
-        !follows && !causes.iter().any(|cause| line(cause) == here)
+        let lost = |cause: &Diagnostic| {
+            let place = cause.place().zip(one.place());
+            let file = |span| self.sources.file_of(span);
+            // What follows an open bracket was read as something else.
+            cause.code == Code::Unclosed
+                && place.is_some_and(|(open, at)| file(open) == file(at) && open < at)
+        };
+        !follows && !causes.iter().any(|cause| line(cause) == here || lost(cause))
     }
 }

@@ -239,8 +239,8 @@ fn numbers(operator: Binary, left: f64, right: f64, range: &Range<usize>) -> Res
     if value.is_finite() {
         return Ok(Computed::Number(value));
     }
-    let message =
-        format!("{} {} {} has no finite value", show_number(left), operator.text(), show_number(right));
+    let base = if left < 0.0 { format!("({})", show_number(left)) } else { show_number(left) };
+    let message = format!("{base} {} {} has no finite value", operator.text(), show_number(right));
     Err(Fault::new(Code::ExpressionValue, range.clone(), message))
 }
 

@@ -60,7 +60,8 @@ impl Fault {
         }
         match self.replacement {
             Some(replacement) if exact => {
-                let text = format!("write `{replacement}`");
+                let sign = matches!(replacement.trim(), "+" | "-");
+                let text = if sign { "add the space".to_owned() } else { format!("write `{replacement}`") };
                 diagnostic.suggest(span, replacement, text)
             }
             _ => diagnostic,

@@ -299,11 +299,9 @@ impl Parser<'_> {
         self.close(&Token::Close, "(", &open)?;
         let range = range.start..self.tokens[self.at - 1].range.end;
         if arguments.len() < function.least || arguments.len() > function.most {
-            let needs = if function.least == 1 {
-                "1 argument".to_owned()
-            } else {
-                format!("{} arguments", function.least)
-            };
+            let least = if function.most > function.least { "at least " } else { "" };
+            let plural = if function.least == 1 { "" } else { "s" };
+            let needs = format!("{least}{} argument{plural}", function.least);
             let message = format!("`{name}` takes {needs}, found {}", arguments.len());
             let fault = Fault::new(Code::ArgumentCount, range, message);
             return Err(fault.label(format!("expected {}", function.usage)));

@@ -79,18 +79,26 @@ impl Lexer<'_> {
     fn next(&mut self) -> Result<Token, Fault> {
         let Some(first) = self.rest().chars().next() else { return Ok(Token::End) };
         match first {
-            'a'..='z' => Ok(self.name()),
+            'a'..='z' => self.name(),
             '0'..='9' => self.number(),
             '\'' | '"' => self.string(first),
             _ => self.operator(first),
         }
     }
 
-    fn name(&mut self) -> Token {
+    fn name(&mut self) -> Result<Token, Fault> {
         let length = self.rest().bytes().take_while(|byte| is_name(*byte)).count();
         let name = self.rest()[..length].to_owned();
+        let range = self.at..self.at + length;
         self.at += length;
-        Token::Name(name)
+        match name.strip_suffix('-') {
+            None => Ok(Token::Name(name)),
+            Some(word) => {
+                let fault =
+                    Fault::new(Code::ExpressionSyntax, range, format!("the name `{name}` ends with `-`"));
+                Err(fault.label("a minus needs a space on both sides").replace(format!("{word} -")))
+            }
+        }
     }
 
     fn number(&mut self) -> Result<Token, Fault> {

@@ -12,7 +12,7 @@ use crate::language::spec::point::{Point, Scale};
 use crate::language::spec::reader::Reader;
 use crate::language::spec::reference::CurveReference;
 use crate::language::spec::spanned::Sp;
-use crate::language::spec::spline::{Bezier, NaturalSpline, report_repeated};
+use crate::language::spec::spline::{Bezier, NaturalSpline, check_closed, report_repeated};
 
 kinds! {
     /// A curve of one kind.
@@ -136,6 +136,7 @@ impl Line {
 
 impl Polyline {
     fn check(&self, _: Span, reader: &mut Reader<'_>) -> bool {
-        report_repeated(&self.points, self.closed.value, "points", reader)
+        check_closed("polyline", self.points.len(), self.closed, reader)
+            && report_repeated(&self.points, self.closed.value, "points", reader)
     }
 }

@@ -44,7 +44,11 @@ pub fn take_kind<K: Kinds>(fields: &mut Fields<'_>, reader: &mut Reader<'_>) -> 
             let report = Diagnostic::error(Code::ManyKinds, message)
                 .at(kind_span(other.key, &other.value), "the second kind")
                 .also(kind_span(one.key, &one.value), "the first kind")
-                .help(format!("give each {title} a name of its own"));
+                .help(if title == "segment" {
+                    "write `{ ... }` for each segment".to_owned()
+                } else {
+                    format!("give each {title} a name of its own")
+                });
             reader.report(report);
             None
         }

@@ -77,7 +77,7 @@ const UNITS: [(&str, u64); 8] = [
 impl Read for Bytes {
     fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
         let Data::String(text) = &value.data else {
-            return whole(value, u64::MAX, reader).map(Self);
+            return whole(value, 0, u64::MAX, reader).map(Self);
         };
         let read = parse_bytes(text);
         if read.is_none() {

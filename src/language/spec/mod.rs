@@ -14,6 +14,7 @@ mod material;
 mod mesh;
 mod name;
 mod node;
+mod page;
 mod path;
 mod point;
 mod profile;
@@ -27,6 +28,7 @@ mod shape;
 mod spanned;
 mod spline;
 mod suggest;
+mod whole;
 
 pub use arc::{Arc, CenterArc};
 pub use assertion::{Assertion, Demand, Expected};
@@ -38,6 +40,7 @@ pub use limit::Limits;
 pub use material::{Alpha, Color, Filter, Material, Texture, Wrap};
 pub use mesh::Mesh;
 pub use node::Node;
+pub use page::reference;
 pub use path::{ArcSegment, Joint, Path, Segment};
 pub use point::{Count, Point, Scale, Segments};
 pub use profile::{Extrude, Frame, Revolve, Sweep};
@@ -46,6 +49,7 @@ pub use shape::{BoxShape, Cylinder, Shape, ShapeDefinition, ShapeOptions, Smooth
 pub use spanned::Sp;
 pub use spline::{Bezier, NaturalSpline, Parameters};
 pub use suggest::closest;
+pub use whole::schema;
 
 pub(crate) use name::check_name;
 pub(crate) use reader::backtick;

@@ -188,8 +188,10 @@ impl Path {
             return true;
         }
         let fits = if self.closed.value { format!("{inner} or {}", inner + 1) } else { inner.to_string() };
-        let message =
-            format!("a path of {} segments has {fits} joints, found {}", self.segments.len(), joints.len());
+        let count = self.segments.len();
+        let segments = if count == 1 { "segment" } else { "segments" };
+        let named = if fits == "1" { "joint" } else { "joints" };
+        let message = format!("a path of {count} {segments} has {fits} {named}, found {}", joints.len());
         reader
             .report(Diagnostic::error(Code::WrongCount, message).at(joints.span, format!("expected {fits}")));
         false

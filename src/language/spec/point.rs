@@ -187,7 +187,7 @@ impl Read for Count {
 
 fn read_counts(value: &Value, many: usize, expected: &str, reader: &mut Reader<'_>) -> Option<Vec<u32>> {
     let count = |value: &Value, reader: &mut Reader<'_>| {
-        whole(value, MOST_SEGMENTS, reader).and_then(|whole| u32::try_from(whole).ok())
+        whole(value, 1, MOST_SEGMENTS, reader).and_then(|whole| u32::try_from(whole).ok())
     };
     if value.number().is_some() {
         return count(value, reader).map(|whole| vec![whole]);

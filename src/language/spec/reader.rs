@@ -96,8 +96,14 @@ impl<'a> Reader<'a> {
         let message = format!("{} must be {expected}, found {}", self.place(), value.describe());
         let mut report =
             Diagnostic::error(Code::WrongType, message).at(value.span, format!("expected {expected}"));
-        if let Data::String(text) = &value.data {
-            report = hint_expression(report, text, value.span);
+        match &value.data {
+            Data::String(text) => report = hint_expression(report, text, value.span),
+            Data::Array(items)
+                if expected == "a table" && items.iter().all(|item| item.table().is_some()) =>
+            {
+                report = report.help("`[[name]]` begins a list of tables; write `[name]`");
+            }
+            _ => {}
         }
         self.report(report);
     }
@@ -192,11 +198,14 @@ impl<'v> Fields<'v> {
 
     /// Reports the keys that nobody took and the fields that are missing. Whether all is well.
     pub fn close(self, reader: &mut Reader<'_>) -> bool {
-        let unknown = self.unknown(reader);
-        if self.missing.is_empty() {
-            return !unknown;
+        let meant = self.unknown(reader);
+        // A misspelt field is not missing too.
+        let missing =
+            self.missing.iter().filter(|name| !meant.iter().flatten().any(|near| same_name(name, near)));
+        let names: Vec<_> = missing.map(|name| format!("`{}`", name.replace('_', "-"))).collect();
+        if names.is_empty() {
+            return meant.is_empty();
         }
-        let names: Vec<_> = self.missing.iter().map(|name| format!("`{}`", name.replace('_', "-"))).collect();
         let fields = if names.len() == 1 { "field" } else { "fields" };
         let message = format!("missing {fields} {} of {}", names.join(", "), self.title);
         let label = format!("needs {}", names.join(", "));
@@ -211,16 +220,20 @@ impl<'v> Fields<'v> {
         entries.filter(|(name, _)| !self.known.iter().any(|known| same_name(known, name))).collect()
     }
 
-    fn unknown(&self, reader: &mut Reader<'_>) -> bool {
+    /// Reports unknown keys; for each the field that was probably meant.
+    fn unknown(&self, reader: &mut Reader<'_>) -> Vec<Option<String>> {
         let unknown = self.unknown_names();
         if unknown.is_empty() {
-            return false;
+            return Vec::new();
         }
         let known: Vec<String> = self.known.iter().map(|name| name.replace('_', "-")).collect();
-        for (name, key) in unknown {
-            reader.report(unknown_field(name, key, &known, self.title));
-        }
-        true
+        let report = |(name, key): (&str, Span)| {
+            let report = unknown_field(name, key, &known, self.title);
+            let meant = report.suggestion.as_ref().map(|suggestion| suggestion.replacement.clone());
+            reader.report(report);
+            meant
+        };
+        unknown.into_iter().map(report).collect()
     }
 }
 

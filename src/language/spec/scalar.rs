@@ -32,15 +32,11 @@ pub(crate) fn finite(value: &Value, reader: &mut Reader<'_>) -> Option<f64> {
 }
 
 /// A whole number in a range; reports everything else.
-pub(crate) fn whole(value: &Value, most: u64, reader: &mut Reader<'_>) -> Option<u64> {
-    let Some(number) = value.number() else {
+pub(crate) fn whole(value: &Value, least: u64, most: u64, reader: &mut Reader<'_>) -> Option<u64> {
+    let Some(number) = value.number().filter(|number| number.is_finite() && number.fract() == 0.0) else {
         reader.mismatch(value, "a whole number");
         return None;
     };
-    if !number.is_finite() || number.fract() != 0.0 {
-        reader.mismatch(value, "a whole number");
-        return None;
-    }
     let whole = match value.data {
         Data::Integer(whole) => u64::try_from(whole).ok(),
         // Exact: a whole number at most 2^53 has an exact u64.
@@ -48,11 +44,16 @@ pub(crate) fn whole(value: &Value, most: u64, reader: &mut Reader<'_>) -> Option
         _ if (0.0..=9_007_199_254_740_992.0).contains(&number) => Some(number as u64),
         _ => None,
     };
-    if let Some(whole) = whole.filter(|whole| *whole <= most) {
+    if let Some(whole) = whole.filter(|whole| (least..=most).contains(whole)) {
         return Some(whole);
     }
-    let message = format!("{} must be from 0 to {most}, found {}", reader.place(), value.describe());
-    reader.report(Diagnostic::error(Code::OutOfRange, message).at(value.span, "out of range"));
+    let demand = if most >= u64::from(u32::MAX) && number < 1.0 {
+        format!("at least {least}")
+    } else {
+        format!("from {least} to {most}")
+    };
+    let message = format!("{} must be {demand}, found {}", reader.place(), value.describe());
+    reader.report(Diagnostic::error(Code::OutOfRange, message).at(value.span, format!("not {demand}")));
     None
 }
 
@@ -72,7 +73,7 @@ impl Read for f64 {
 
 impl Read for u32 {
     fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
-        whole(value, u64::from(Self::MAX), reader).and_then(|whole| Self::try_from(whole).ok())
+        whole(value, 0, u64::from(Self::MAX), reader).and_then(|whole| Self::try_from(whole).ok())
     }
 
     fn schema(_: &mut Schemas) -> Json {
@@ -88,7 +89,7 @@ impl Read for u32 {
 
 impl Read for u64 {
     fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
-        whole(value, Self::MAX, reader)
+        whole(value, 0, Self::MAX, reader)
     }
 
     fn schema(schemas: &mut Schemas) -> Json {

@@ -83,17 +83,9 @@ impl Read for Parameters {
 
 impl NaturalSpline {
     fn check(&self, _: Span, reader: &mut Reader<'_>) -> bool {
-        let distinct = report_repeated(&self.points, self.closed.value, "points", reader);
-        self.check_closed(reader) && self.check_parameters(reader) && distinct
-    }
-
-    fn check_closed(&self, reader: &mut Reader<'_>) -> bool {
-        if !self.closed.value || self.points.len() > 2 {
-            return true;
-        }
-        let message = format!("a closed spline needs at least 3 points, found {}", self.points.len());
-        reader.report(Diagnostic::error(Code::WrongLength, message).at(self.closed.span, "closed"));
-        false
+        check_closed("spline", self.points.len(), self.closed, reader)
+            && report_repeated(&self.points, self.closed.value, "points", reader)
+            && self.check_parameters(reader)
     }
 
     fn check_parameters(&self, reader: &mut Reader<'_>) -> bool {
@@ -112,6 +104,16 @@ impl NaturalSpline {
         }
         check_increasing(numbers, reader)
     }
+}
+
+/// Whether a curve through so many points may be closed.
+pub(crate) fn check_closed(what: &str, points: usize, closed: Sp<bool>, reader: &mut Reader<'_>) -> bool {
+    if !closed.value || points > 2 {
+        return true;
+    }
+    let message = format!("a closed {what} needs at least 3 points, found {points}");
+    reader.report(Diagnostic::error(Code::WrongLength, message).at(closed.span, "closed"));
+    false
 }
 
 fn check_increasing(numbers: &[Sp<f64>], reader: &mut Reader<'_>) -> bool {

@@ -14,7 +14,8 @@ pub fn closest<'n>(wrong: &str, names: impl Iterator<Item = &'n str>) -> Option<
         return None;
     }
     let plain = normal(wrong);
-    let allowed = (letters / 3).max(1);
+    // Of one or two letters nothing is left to recognize when one is wrong.
+    let allowed = if letters < 3 { 0 } else { letters / 3 };
     let distance = |name: &str| {
         if normal(name) == plain { 0 } else { damerau_levenshtein(wrong, name) }
     };

@@ -19,12 +19,14 @@ const MOST_ERRORS: usize = 50;
 #[must_use]
 pub fn parse(sources: &SourceMap, file: FileId) -> (Table, Vec<Diagnostic>) {
     let text = sources.text(file);
-    let mut parser = Parser { sources, file, found: Vec::new() };
+    let mut parser = Parser { sources, file, found: Vec::new(), unclosed: usize::MAX };
     if !parser.prepare(text) {
         return (Table::default(), parser.found);
     }
     let (tree, errors) = DeTable::parse_recoverable(text);
-    for error in errors.iter().take(MOST_ERRORS) {
+    let unclosed = parser.unclosed;
+    let sound = errors.iter().filter(|error| error.span().is_none_or(|range| range.start < unclosed));
+    for error in sound.take(MOST_ERRORS) {
         parser.syntax(error.span(), error.message());
     }
     let table = parser.table(tree.into_inner());
@@ -35,6 +37,8 @@ struct Parser<'s> {
     sources: &'s SourceMap,
     file: FileId,
     found: Vec<Diagnostic>,
+    /// Where a bracket opens that is never closed.
+    unclosed: usize,
 }
 
 impl Parser<'_> {
@@ -54,6 +58,13 @@ impl Parser<'_> {
                 Finding::Newer(range, message) => {
                     let report = Diagnostic::error(Code::Syntax, message.to_owned());
                     self.found.push(report.at(self.span(range), "not TOML 1.0"));
+                }
+                Finding::Unclosed(at) => {
+                    let bracket = &text[at..=at];
+                    let report =
+                        Diagnostic::error(Code::Unclosed, format!("this `{bracket}` is never closed"));
+                    self.found.push(report.at(self.span(at..at + 1), "no closing bracket"));
+                    self.unclosed = at;
                 }
                 Finding::TooDeep(at) => {
                     let message = format!("arrays and tables are nested more than {DEEPEST} deep");
@@ -77,7 +88,13 @@ impl Parser<'_> {
                 Diagnostic::error(Code::DuplicateName, format!("{} is written twice", name(snippet)));
             return self.found.push(report.at(span, "the second time"));
         }
-        self.found.push(Diagnostic::error(Code::Syntax, message).at(span, label));
+        let report = Diagnostic::error(Code::Syntax, better(message, snippet)).at(span, label);
+        self.found.push(match snippet.strip_prefix(',') {
+            Some(rest) if rest.starts_with(|c: char| c.is_ascii_digit()) => {
+                report.help("numbers have a decimal point: 1.5")
+            }
+            _ => report,
+        });
     }
 
     fn table(&mut self, table: DeTable<'_>) -> Table {
@@ -97,6 +114,7 @@ impl Parser<'_> {
             DeValue::String(text) => Data::String(text.into_owned()),
             DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
                 Ok(number) => Data::Integer(number),
+                Err(_) if number.as_str().is_empty() => Data::Broken,
                 Err(_) => self.too_large(number.as_str(), span),
             },
             DeValue::Float(number) => self.float(number.as_str(), span),
@@ -135,6 +153,20 @@ impl Parser<'_> {
             self.found.push(report.at(span, "expected hours:minutes:seconds"));
         }
         Data::Datetime(read)
+    }
+}
+
+/// The parser's message in plainer words, where it has any.
+fn better<'m>(message: &'m str, snippet: &str) -> &'m str {
+    match message {
+        "string values must be quoted" if snippet.trim().is_empty() => "a value is missing",
+        "invalid basic string" | "invalid literal string" if snippet.trim().is_empty() => {
+            "this string does not end on its line"
+        }
+        "invalid basic string" | "invalid literal string" => "a control character stands in this string",
+        "unexpected key or value" => "nothing more can stand on this line",
+        "missing escaped value" => "no such escape",
+        message => message,
     }
 }
 

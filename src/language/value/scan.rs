@@ -14,20 +14,30 @@ pub(crate) enum Finding {
     TooDeep(usize),
     /// Something that only later versions of TOML allow.
     Newer(Range<usize>, &'static str),
+    /// A bracket that is never closed: what the parser says of the text after it is guesswork.
+    Unclosed(usize),
 }
 
 /// Looks through a text. At most one [`Finding::TooDeep`], which ends the search.
 pub(crate) fn scan(text: &str) -> Vec<Finding> {
     let mut scanner =
         Scanner { bytes: text.as_bytes(), at: 0, open: Vec::new(), comma: None, found: Vec::new() };
-    while scanner.at < scanner.bytes.len() && scanner.step() {}
+    while scanner.at < scanner.bytes.len() {
+        if !scanner.step() {
+            return scanner.found;
+        }
+    }
+    if let Some((_, at)) = scanner.open.first() {
+        scanner.found.push(Finding::Unclosed(*at));
+    }
     scanner.found
 }
 
 struct Scanner<'t> {
     bytes: &'t [u8],
     at: usize,
-    open: Vec<u8>,
+    /// The open brackets and their places.
+    open: Vec<(u8, usize)>,
     comma: Option<usize>,
     found: Vec<Finding>,
 }
@@ -53,7 +63,7 @@ impl Scanner<'_> {
     }
 
     fn enter(&mut self, bracket: u8) -> bool {
-        self.open.push(bracket);
+        self.open.push((bracket, self.at));
         if self.open.len() > DEEPEST {
             self.found.push(Finding::TooDeep(self.at));
             return false;
@@ -82,8 +92,9 @@ impl Scanner<'_> {
         if self.inline_table() {
             self.newer(self.at..self.at + 1, "an inline table stands on one line");
             // One report for each table is enough.
-            self.open.pop();
-            self.open.push(b'[');
+            if let Some((bracket, _)) = self.open.last_mut() {
+                *bracket = b'[';
+            }
         }
         self.at += 1;
     }
@@ -95,7 +106,7 @@ impl Scanner<'_> {
     }
 
     fn inline_table(&self) -> bool {
-        self.open.last() == Some(&b'{')
+        self.open.last().is_some_and(|(bracket, _)| *bracket == b'{')
     }
 
     fn string(&mut self, quote: u8) {
@@ -143,6 +154,7 @@ mod tests {
 
     #[test]
     fn depth_is_counted_outside_of_strings_and_comments() {
+        assert_eq!(scan("a = [1, [2]\n[b]\nc = 3"), [Finding::Unclosed(4)]);
         let deep = format!("a = {}", "[".repeat(100_000));
         assert_eq!(scan(&deep), [Finding::TooDeep(4 + DEEPEST)]);
         let quoted = format!("a = '{0}' # {0}\nb = \"\\\"{0}\"\nc = '''{0}\n{0}'''", "[{".repeat(99));

@@ -1,0 +1,145 @@
+//! What each code means, at length, for `kiln explain CODE`.
+
+use crate::language::diagnostic::Code;
+
+/// A code explained.
+#[derive(Clone, Copy, Debug)]
+pub struct Example {
+    /// Why it is an error and what to do.
+    pub text: &'static str,
+    /// A document that gives the code; empty where none can show it.
+    pub wrong: &'static str,
+    /// The document put right.
+    pub right: &'static str,
+}
+
+/// The explanation of a code as a page of Markdown.
+#[must_use]
+pub fn explain(code: Code) -> String {
+    let Example { text, wrong, right } = example(code);
+    let mut page = format!("# {code}: {}\n\n{text}\n", code.title());
+    for (title, document) in [("Wrong", wrong), ("Right", right)] {
+        if !document.is_empty() {
+            page.push_str(&format!("\n{title}:\n\n```toml\n{}\n```\n", document.trim()));
+        }
+    }
+    page
+}
+
+macro_rules! examples {
+    ($($code:ident: $text:literal, $wrong:literal => $right:literal;)+) => {
+        /// The explanation of a code and its examples.
+        #[must_use]
+        pub fn example(code: Code) -> Example {
+            match code {$(
+                Code::$code => Example { text: $text, wrong: $wrong, right: $right },
+            )+}
+        }
+    };
+}
+
+examples! {
+    FileMissing: "A document names a file that does not exist. Paths are relative to the file that writes them.",
+        r#"include = ["materials.toml"]"# => "[material.clay]";
+    FileUnreadable: "A document names something that cannot be read: a folder, or a file without permission.",
+        r#"include = ["."]"# => "[material.clay]";
+    OutsideRoot: "Paths are relative, use `/`, and stay inside the project: a document must mean the same on every machine. Links are followed before the check.",
+        "[material.clay]\ncolor-texture = \"/home/me/clay.png\"" => "[material.clay]\ncolor-texture = \"textures/clay.png\"";
+    NotText: "Documents are UTF-8 text, with or without a byte order mark. Editors call UTF-16 \"Unicode\" sometimes; save as UTF-8.",
+        "" => "";
+    Syntax: "The text is not TOML 1.0. Strings stand in quotes, inline tables on one line, and numbers have a decimal point.",
+        "[shape.ball.sphere]\nradius = 1,5" => "[shape.ball.sphere]\nradius = 1.5";
+    TooDeep: "Brackets, includes or definitions that use each other are nested too deeply. The depth of definitions is `recursion` in [limits].",
+        "[limits]\nrecursion = 1\n[shape.a.sphere]\nradius = 1\n[shape.b.copy]\nof = \"a\"" =>
+        "[limits]\nrecursion = 2\n[shape.a.sphere]\nradius = 1\n[shape.b.copy]\nof = \"a\"";
+    TooLarge: "A file, or all files of a document together, are larger than 4 GiB.",
+        "" => "";
+    Unclosed: "A bracket or brace is opened and never closed. What follows it cannot be understood.",
+        "[shape.a.box]\nsize = [1, 2, 3" => "[shape.a.box]\nsize = [1, 2, 3]";
+    UnknownField: "A table has a key that means nothing there. Keys are in kebab-case, and unknown ones are errors, so that no slip of the pen passes unseen.",
+        "[shape.a.sphere]\nradus = 1" => "[shape.a.sphere]\nradius = 1";
+    MissingField: "A table lacks a key that has no default.",
+        "[shape.a.cylinder]\nradius = 1" => "[shape.a.cylinder]\nradius = 1\nheight = 2";
+    NoKind: "A curve or a shape has exactly one kind, which is the last word of its header: [curve.NAME.KIND], [shape.NAME.KIND].",
+        "[shape.a]\nat = [0, 1, 0]" => "[shape.a]\nat = [0, 1, 0]\n[shape.a.sphere]\nradius = 1";
+    ManyKinds: "A curve or a shape has exactly one kind. Give the second one a name of its own.",
+        "[shape.a.sphere]\nradius = 1\n[shape.a.box]\nsize = [1, 1, 1]" =>
+        "[shape.a.sphere]\nradius = 1\n[shape.b.box]\nsize = [1, 1, 1]";
+    Conflict: "Two keys exclude each other, or one has no effect beside the other.",
+        "[curve.a.arc]\nradius = 1\npoints = [[0, 0], [1, 1], [2, 0]]" =>
+        "[curve.a.arc]\npoints = [[0, 0], [1, 1], [2, 0]]";
+    WrongType: "A value is of another type than its key asks for, whether written or computed.",
+        "[shape.a.sphere]\nradius = \"1\"" => "[shape.a.sphere]\nradius = 1";
+    WrongLength: "An array has more or fewer items than its key asks for. Nothing is dropped or filled in silently.",
+        "[shape.a.box]\nsize = [1, 2]" => "[shape.a.box]\nsize = [1, 2, 3]";
+    OutOfRange: "A number is outside of the range that makes sense for its key.",
+        "[shape.a.sphere]\nradius = -1" => "[shape.a.sphere]\nradius = 1";
+    NotFinite: "TOML has `nan` and `inf`, geometry has not. Numbers beyond 1e15 are refused too: what is computed from them overflows.",
+        "[shape.a.sphere]\nradius = inf" => "[shape.a.sphere]\nradius = 1000";
+    UnknownChoice: "Only certain words can stand here; the message lists them.",
+        "unit = \"meter\"" => "unit = \"m\"";
+    Malformed: "A text is not of the form that its key asks for, such as a color or a size of memory.",
+        "[material.a]\ncolor = \"red\"" => "[material.a]\ncolor = \"#ff0000\"";
+    BadName: "Names are in kebab-case: lower-case letters and digits, words joined by `-`, a letter first.",
+        "[material.OldClay]" => "[material.old-clay]";
+    UnknownName: "A definition uses a name that no definition of that family has.",
+        "[shape.a]\nmaterial = \"clay\"\nsphere = { radius = 1 }" =>
+        "[shape.a]\nmaterial = \"clay\"\nsphere = { radius = 1 }\n[material.clay]";
+    WrongFamily: "The name exists, but names something else. Curves, shapes, materials and nodes have a namespace each.",
+        "[shape.ball.sphere]\nradius = 1\n[shape.vase.revolve]\nprofile = \"ball\"" =>
+        "[curve.ball.circle]\nradius = 1\ncenter = [2, 0]\n[shape.vase.revolve]\nprofile = \"ball\"";
+    Cycle: "Definitions are evaluated by demand, each once; one that needs itself, directly or through others, has no value.",
+        "[shape.a.copy]\nof = \"b\"\n[shape.b.copy]\nof = \"a\"" =>
+        "[shape.a.copy]\nof = \"b\"\n[shape.b.sphere]\nradius = 1";
+    DuplicateName: "A name or a key is given twice, in one document or in two that are included together.",
+        "[material.a]\nroughness = 1\nroughness = 0.5" => "[material.a]\nroughness = 0.5";
+    UnusedParameter: "A parameter is in no expression, so changing it changes nothing: often its name is misspelt where it should be used. A warning.",
+        "[parameters]\nheight = 1" => "[parameters]\nheight = 1\n[shape.a.sphere]\nradius = \"= height\"";
+    NothingToBake: "A document without nodes shows the shapes that nothing else uses; this one has none.",
+        "" => "[shape.a.sphere]\nradius = 1";
+    ExpressionSyntax: "An expression cannot be read. `+` and `-` need a space on both sides, since `-` may be part of a name.",
+        "[shape.a.sphere]\nradius = \"= 2-1\"" => "[shape.a.sphere]\nradius = \"= 2 - 1\"";
+    UnknownVariable: "An expression uses a name that is not in [parameters]. `wall-thickness` is one name; a difference is `wall - thickness`.",
+        "[shape.a.sphere]\nradius = \"= size\"" => "[parameters]\nsize = 1\n[shape.a.sphere]\nradius = \"= size\"";
+    UnknownFunction: "An expression calls a function that does not exist; the reference page lists them.",
+        "[shape.a.sphere]\nradius = \"= root(4)\"" => "[shape.a.sphere]\nradius = \"= sqrt(4)\"";
+    ExpressionType: "An operation or a function is given a value that it does not work on.",
+        "[shape.a.sphere]\nradius = \"= 'a' * 2\"" => "[shape.a.sphere]\nradius = \"= 1 * 2\"";
+    ArgumentCount: "A function is given too few or too many arguments.",
+        "[shape.a.sphere]\nradius = \"= mix(1, 2)\"" => "[shape.a.sphere]\nradius = \"= mix(1, 2, 0.5)\"";
+    ExpressionValue: "An operation has no finite value: a division by zero, the root of a negative number.",
+        "[shape.a.sphere]\nradius = \"= 1 / 0\"" => "[shape.a.sphere]\nradius = \"= 1 / 2\"";
+    ExpressionLimit: "An expression is nested too deeply or too long, or the expressions of the document take too many steps or make too many items.",
+        "[curve.a.polyline]\npoints = { count = 1e9, each = \"= [i, 0]\" }" =>
+        "[curve.a.polyline]\npoints = { count = 100, each = \"= [i, 0]\" }";
+    ParameterCycle: "A parameter is computed from itself, directly or through others.",
+        "[parameters]\na = \"= b\"\nb = \"= a\"" => "[parameters]\na = \"= b\"\nb = 1\n[shape.s.sphere]\nradius = \"= a\"";
+    BadOverride: "`--set name=value` names a parameter that the document does not have, or gives it a value of another type.",
+        "" => "";
+    ReservedName: "A parameter cannot have the name of a function, of a word of the expression language, or `i`.",
+        "[parameters]\nmin = 1" => "[parameters]\nleast = 1\n[shape.a.sphere]\nradius = \"= least\"";
+    IncludeCycle: "A document includes itself, directly or through others.",
+        "include = [\"example.toml\"]" => "";
+    IncludeConflict: "An included document is written in another unit or axis, or says what only the main document can say: `tolerance`, `asset`, `limits`.",
+        "" => "";
+    UnknownVariant: "The variant that was asked for is not in the document.",
+        "" => "[variant.tall.parameters]\n[shape.a.sphere]\nradius = 1";
+    LimitRaised: "[limits] in a document can only lower the limits: what a stranger's document may use is for the machine's owner to say.",
+        "[limits]\ntriangles = 100_000_000" => "[limits]\ntriangles = 1_000_000";
+    RepeatedPoints: "Two consecutive points are equal. A curve has no direction there, and a spline through them no parameter.",
+        "[curve.a.polyline]\npoints = [[0, 0], [0, 0], [1, 0]]" => "[curve.a.polyline]\npoints = [[0, 0], [1, 0]]";
+    Degenerate: "What is written determines no curve, or copies that all stand in one place.",
+        "[curve.a.arc]\npoints = [[0, 0], [1, 0], [2, 0]]" => "[curve.a.arc]\npoints = [[0, 0], [1, 1], [2, 0]]";
+    WrongCount: "The number of items does not fit the other keys of the table.",
+        "[curve.a.bezier]\npoints = [[0, 0], [1, 1], [2, 0]]" =>
+        "[curve.a.bezier]\npoints = [[0, 0], [1, 1], [2, 0]]\ndegree = 2";
+    NotIncreasing: "The parameters of a spline must increase from point to point.",
+        "[curve.a.natural-spline]\npoints = [[0, 0], [1, 0], [2, 0]]\nparameters = [0, 2, 1]" =>
+        "[curve.a.natural-spline]\npoints = [[0, 0], [1, 0], [2, 0]]\nparameters = [0, 1, 2]";
+    FaceIndex: "A face names a point that is not in the list. Indices count from 0.",
+        "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[1, 2, 3]]" =>
+        "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[0, 1, 2]]";
+    FaceCorners: "A face needs at least three corners, all different.",
+        "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[0, 1, 1]]" =>
+        "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[0, 1, 2]]";
+}

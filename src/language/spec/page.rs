@@ -1,0 +1,175 @@
+//! The reference page, written from the schema: one source for both.
+
+use std::fmt::Write;
+
+use serde_json::{Map, Value as Json};
+
+use crate::language::expression::FUNCTIONS;
+use crate::language::spec::section::SECTIONS;
+use crate::language::spec::whole::schema;
+use crate::language::value::show_number;
+
+/// The chapters after the first, and the tables that stand in each.
+const CHAPTERS: [(&str, &str, &[&str]); 5] = [
+    (
+        "Curves",
+        "A curve is written `[curve.NAME.KIND]`, or in place where a curve is asked for: `{ circle = { radius = 0.005 } }`.",
+        &[
+            "line",
+            "polyline",
+            "circle",
+            "ellipse",
+            "arc",
+            "helix",
+            "natural-spline",
+            "bezier",
+            "path",
+            "segment",
+            "arc segment",
+            "reverse",
+            "transform",
+        ],
+    ),
+    (
+        "Shapes",
+        "A shape is written `[shape.NAME]`, for the fields of every shape, and `[shape.NAME.KIND]`.",
+        &[
+            "shape", "box", "sphere", "cylinder", "revolve", "extrude", "sweep", "mesh", "import", "copy",
+            "mirror", "plane", "array", "group",
+        ],
+    ),
+    ("Materials", "", &["material", "texture"]),
+    ("Nodes", "A document without nodes shows each shape that no other definition uses.", &["node"]),
+    ("Facts, assertions and limits", "", &["asset", "bounds", "limits"]),
+];
+
+/// The reference page of the language, as Markdown.
+#[must_use]
+pub fn reference() -> String {
+    let schema = schema();
+    let mut page =
+        String::from("# Reference\n\nEvery number may be an expression: a string that begins with `= `.\n");
+    page.push_str("Lengths are in the document's unit, angles in degrees.\n\n## A document\n\n");
+    let rows = SECTIONS.iter().map(|(name, doc)| format!("| `{name}` | {doc} |\n"));
+    page.push_str("| key | meaning |\n| --- | --- |\n");
+    page.extend(rows);
+    for (title, intro, tables) in CHAPTERS {
+        let _ = write!(page, "\n## {title}\n");
+        if !intro.is_empty() {
+            let _ = write!(page, "\n{intro}\n");
+        }
+        for name in tables {
+            page.push_str(&table(name, &schema["$defs"][name]));
+        }
+    }
+    page.push_str(&expressions());
+    page
+}
+
+fn table(name: &str, schema: &Json) -> String {
+    let mut text = format!("\n### {name}\n\n{}\n", schema["description"].as_str().unwrap_or_default());
+    let Some(properties) = schema["properties"].as_object() else { return text };
+    let required = schema["required"].as_array().map(Vec::as_slice).unwrap_or_default();
+    text.push_str("\n| key | type | default | meaning |\n| --- | --- | --- | --- |\n");
+    for (key, field) in properties {
+        let default = match field.get("default") {
+            Some(default) => format!("`{}`", toml(default)),
+            None if required.iter().any(|name| name == key) => "required".to_owned(),
+            None => String::new(),
+        };
+        let meaning = cell(field["description"].as_str().unwrap_or_default());
+        let _ = writeln!(text, "| `{key}` | {} | {default} | {meaning} |", kind(field));
+    }
+    text
+}
+
+/// A description in one line of a table: choices after it, with semicolons.
+fn cell(description: &str) -> String {
+    let mut lines = description.split("\n- ");
+    let first = lines.next().unwrap_or_default().replace('\n', " ");
+    let choices: Vec<_> = lines.map(|line| line.trim_end_matches('.').replace('\n', " ")).collect();
+    let list = if choices.is_empty() { String::new() } else { format!(" {}.", choices.join("; ")) };
+    format!("{first}{list}").replace('|', "\\|")
+}
+
+fn kind(schema: &Json) -> String {
+    if let Some(target) = schema["$ref"].as_str() {
+        return format!("table `{}`", target.trim_start_matches("#/$defs/"));
+    }
+    if let (Some(then), Some(other)) = (schema.get("then"), schema.get("else")) {
+        return format!("{} or {}", kind(other), kind(then));
+    }
+    if let Some(words) = schema.pointer("/anyOf/0/enum").and_then(Json::as_array) {
+        return words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
+    }
+    let names: Vec<&str> = match &schema["type"] {
+        Json::Array(names) => names.iter().filter_map(Json::as_str).collect(),
+        name => name.as_str().into_iter().collect(),
+    };
+    let object = schema.as_object();
+    let plain = |name: &&str| match *name {
+        "string" if names.len() > 1 => schema["pattern"].as_str().is_some_and(|pattern| pattern != "^= "),
+        "object" => !names.contains(&"array"),
+        _ => true,
+    };
+    let described = names.iter().filter(|name| plain(name)).map(|name| describe(name, schema, object));
+    described.collect::<Vec<_>>().join(" or ")
+}
+
+fn describe(name: &str, schema: &Json, object: Option<&Map<String, Json>>) -> String {
+    match name {
+        "number" | "integer" => {
+            let word = if name == "integer" { "whole number" } else { name };
+            object.map_or(word.to_owned(), |object| format!("{word}{}", bounds(object)))
+        }
+        "boolean" => "true or false".to_owned(),
+        "array" => {
+            let count = match (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {
+                (Some(least), Some(most)) if least == most => format!("{least} "),
+                (Some(least), Some(most)) => format!("{least} to {most} "),
+                (Some(least), None) => format!("at least {least} "),
+                _ => String::new(),
+            };
+            format!("list of {count}({})", kind(&schema["items"]))
+        }
+        "object" => match schema.get("additionalProperties") {
+            Some(value) if value.is_object() => format!("table of ({})", kind(value)),
+            _ => "table".to_owned(),
+        },
+        name => name.to_owned(),
+    }
+}
+
+fn bounds(object: &Map<String, Json>) -> String {
+    let number = |key: &str| object.get(key).and_then(Json::as_f64).map(show_number);
+    let low = number("exclusiveMinimum").map(|bound| format!("> {bound}"));
+    let least = number("minimum").map(|bound| format!("≥ {bound}"));
+    let most = number("maximum").map(|bound| format!("≤ {bound}"));
+    let zero = object.get("not").map(|_| "not 0".to_owned());
+    let all: Vec<_> = [low, least, most, zero].into_iter().flatten().collect();
+    if all.is_empty() { String::new() } else { format!(" {}", all.join(", ")) }
+}
+
+fn toml(value: &Json) -> String {
+    match value {
+        Json::Number(number) => number.as_f64().map_or_else(|| number.to_string(), show_number),
+        Json::Array(items) => format!("[{}]", items.iter().map(toml).collect::<Vec<_>>().join(", ")),
+        Json::Object(_) => "{}".to_owned(),
+        other => other.to_string(),
+    }
+}
+
+fn expressions() -> String {
+    let mut text = String::from(
+        "\n## Expressions\n\nA string that begins with `= ` is computed. It may use numbers, `true`, `false`, `'text'`, \
+         points `[x, y]`, names of `[parameters]`, `pi`, brackets and, from loose to tight: `or`, `and`, `not`, \
+         `== != < <= > >=`, `+ -`, `* / %`, a sign, `^`. `+` and `-` between operands need spaces on both sides, since \
+         `-` may be part of a name. Points are added, subtracted, multiplied by numbers; `p.x` is a part of one. The \
+         remainder `%` has the sign of the divisor. A list may be computed: in `{ count = 24, each = \"= [i, sin(i * 15)]\" }` \
+         `i` counts from 0.\n\n| function | value |\n| --- | --- |\n",
+    );
+    for function in FUNCTIONS {
+        let _ = writeln!(text, "| `{}` | {} |", function.usage, function.doc);
+    }
+    text
+}

@@ -1,0 +1,41 @@
+//! The examples of `kiln explain` do what they say.
+
+use kiln::language::Document;
+use kiln::language::diagnostic::{Code, example, explain};
+use kiln::language::source::MemoryFiles;
+
+fn codes(text: &str) -> Vec<Code> {
+    let files = MemoryFiles::new().with("example.toml", text).with("folder/file", "");
+    let found = match Document::load("example.toml", &files) {
+        Ok(document) => match document.spec(None, &[]) {
+            Ok((_, warnings)) => warnings,
+            Err(found) => found.into_vec(),
+        },
+        Err(found) => found.into_vec(),
+    };
+    found.into_iter().map(|one| one.code).collect()
+}
+
+#[test]
+fn a_wrong_example_gives_its_code_and_a_right_one_none() {
+    for &code in Code::ALL {
+        let example = example(code);
+        assert!(example.text.ends_with('.'), "{code}");
+        if !example.wrong.is_empty() {
+            assert_eq!(codes(example.wrong), [code], "{code}: {}", example.wrong);
+        }
+        assert_eq!(codes(example.right), [], "{code}: {}", example.right);
+    }
+}
+
+#[test]
+fn codes_are_unique_sorted_and_found_by_their_text() {
+    let texts: Vec<&str> = Code::ALL.iter().map(|code| code.text()).collect();
+    assert!(texts.windows(2).all(|pair| pair[0] < pair[1]), "{texts:?}");
+    for &code in Code::ALL {
+        assert_eq!(Code::parse(&code.text().to_lowercase()), Some(code));
+        assert!(explain(code).contains(code.title()));
+        assert!(!code.title().is_empty());
+    }
+    assert_eq!(Code::parse("K9999"), None);
+}
