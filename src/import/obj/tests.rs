@@ -67,6 +67,20 @@ fn attributes_only_where_they_are_given() {
 }
 
 #[test]
+fn attributes_that_are_missing_altogether_are_forgotten() {
+    let read = on_quad("f 1/1/3 2/2/2 3/3/1").expect("good");
+    assert!(read.mesh.corner_uvs.is_empty() && read.mesh.corner_normals.is_empty());
+    let notes: Vec<&str> = read.notes.iter().map(|note| note.message.as_str()).collect();
+    assert_eq!(
+        notes,
+        [
+            "faces name texture coordinates, but the file has none",
+            "faces name normals, but the file has none"
+        ]
+    );
+}
+
+#[test]
 fn smoothing_groups_are_kept() {
     let read = on_quad("f 1 2 3\ns 1\nf 1 2 3\ns off\nf 1 2 3\ns 7\nf 1 2 3\ns 0\nf 1 2 3\ns on\nf 1 2 3")
         .expect("good");
@@ -187,7 +201,10 @@ fn faults_in_faces() {
         message("f 1 2 99999999999999999999"),
         "line 5: vertex 99999999999999999999 does not exist; the file has 4"
     );
-    assert_eq!(message("f 1/1 2/1 3/1"), "line 5: texture coordinate 1 does not exist; the file has 0");
+    assert_eq!(
+        message("vt 0 0\nf 1/1 2/1 3/2"),
+        "line 6: texture coordinate 2 does not exist; the file has 1"
+    );
     assert_eq!(message("f 1//2 2//2 3//2\nvn 0 0 1"), "line 5: normal 2 does not exist; the file has 1");
     for corner in ["x", "/1", "1/2/3/4", "1.5", "--1", "+", "1/x", "0x1", "1_0"] {
         let expected = ImportError::BadCorner { line: 5, text: corner.to_owned() };
