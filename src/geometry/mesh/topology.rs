@@ -106,7 +106,7 @@ fn next(corner: u32) -> u32 {
 
 /// The corner before a corner in its triangle.
 fn before(corner: u32) -> u32 {
-    if corner % 3 == 0 { corner + 2 } else { corner - 1 }
+    if corner.is_multiple_of(3) { corner + 2 } else { corner - 1 }
 }
 
 /// Which edges run back along which.
@@ -212,7 +212,6 @@ fn sort_short(keys: &mut [u64]) {
 }
 
 /// The corner in a key.
-#[expect(clippy::cast_possible_truncation, reason = "the mask leaves 31 bits")]
 fn corner_in(key: u64) -> u32 {
     (key & (BACKWARD - 1)) as u32
 }
