@@ -60,6 +60,11 @@ fn read(name: &str, bytes: &[u8]) -> Result<Imported, ImportError> {
     }
 }
 
+/// The message with its place, as a diagnostic shows it.
+fn told(error: &ImportError) -> String {
+    error.line().map_or_else(|| error.to_string(), |line| format!("line {line}: {error}"))
+}
+
 /// A triangle mesh by position, as other tools see it.
 struct Soup {
     corners: Vec<[DVec3; 3]>,
@@ -235,7 +240,7 @@ fn hostile_and_broken_meshes_are_refused_or_read_safely() {
         ("index_zero.obj", Some("line 5: index 0 in `0`; indices count from 1")),
         ("nan_vertex.obj", Some("line 1: `nan` is not a finite number")),
         ("negative_too_far.obj", Some("line 5: vertex -9 does not exist; only 4 come before it")),
-        ("nul_bytes.obj", Some("this is not text: byte 0x00 on line 5")),
+        ("nul_bytes.obj", Some("line 5: this is not text: it holds byte 0x00")),
         ("path_traversal.obj", None),
         ("utf8_bom.obj", None),
         ("malformed.obj", Some("line 28: index 0 in `0`; indices count from 1")),
@@ -250,7 +255,7 @@ fn hostile_and_broken_meshes_are_refused_or_read_safely() {
     {
         let name = file.file_name().expect("a name").to_string_lossy().into_owned();
         let result = read(&name, &bytes_of(&file));
-        let message = result.as_ref().err().map(ToString::to_string);
+        let message = result.as_ref().err().map(told);
         let known =
             expected.get(name.as_str()).unwrap_or_else(|| panic!("{name} is not in the list: {message:?}"));
         assert_eq!(message.as_deref(), *known, "{name}");

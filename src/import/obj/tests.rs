@@ -15,6 +15,11 @@ fn group(source: &str, group: &str) -> Result<Imported, ImportError> {
     read(source.as_bytes(), &options, &mut |_| None)
 }
 
+/// The message with its place, as a diagnostic shows it.
+fn told(error: &ImportError) -> String {
+    error.line().map_or_else(|| error.to_string(), |line| format!("line {line}: {error}"))
+}
+
 const QUAD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 fn on_quad(rest: &str) -> Result<Imported, ImportError> {
@@ -175,7 +180,7 @@ fn what_is_passed_over_is_told_once() {
 #[test]
 fn a_wrong_vertex_is_an_error_when_it_is_used() {
     assert!(on_quad("v 1 2 3.1+e2\nv nan 0 0\nv 1\nf 1 2 3").is_ok());
-    let message = |rest| on_quad(rest).expect_err("a wrong vertex").to_string();
+    let message = |rest| told(&on_quad(rest).expect_err("a wrong vertex"));
     assert_eq!(
         message("v 1 2 3.1+e2\nf 1 2 5"),
         "line 5: expected a number for the z coordinate of a vertex, found `3.1+e2`"
@@ -189,7 +194,7 @@ fn a_wrong_vertex_is_an_error_when_it_is_used() {
 
 #[test]
 fn faults_in_faces() {
-    let message = |rest| on_quad(rest).expect_err("a fault").to_string();
+    let message = |rest| told(&on_quad(rest).expect_err("a fault"));
     assert_eq!(message("f 1 2 0"), "line 5: index 0 in `0`; indices count from 1");
     assert_eq!(message("f 1 2 5"), "line 5: vertex 5 does not exist; the file has 4");
     assert_eq!(
