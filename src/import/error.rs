@@ -4,14 +4,15 @@ use thiserror::Error;
 
 use super::Foreign;
 
-/// Why a file could not be imported. `Display` is a message for a diagnostic; [`ImportError::hint`] says what to do.
+/// Why a file could not be imported. `Display` is a message for a diagnostic, [`ImportError::line`] its place,
+/// [`ImportError::hint`] what to do.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ImportError {
     /// A file of another format.
     #[error("this is {}, which Kiln does not read", .0.name)]
     Foreign(Foreign),
     /// Bytes where text is needed.
-    #[error("this is not text: byte 0x{byte:02x} on line {line}")]
+    #[error("this is not text: it holds byte 0x{byte:02x}")]
     Binary {
         /// Line of the first such byte.
         line: u32,
@@ -22,7 +23,7 @@ pub enum ImportError {
     #[error("the text is encoded as UTF-16")]
     Utf16,
     /// Something that should be a number is not.
-    #[error("line {line}: expected a number for {what}, found `{text}`")]
+    #[error("expected a number for {what}, found `{text}`")]
     BadNumber {
         /// Where.
         line: u32,
@@ -32,7 +33,7 @@ pub enum ImportError {
         text: String,
     },
     /// A number is NaN, infinite, or too large for a double.
-    #[error("line {line}: `{text}` is not a finite number")]
+    #[error("`{text}` is not a finite number")]
     NotFinite {
         /// Where.
         line: u32,
@@ -48,7 +49,7 @@ pub enum ImportError {
         value: f64,
     },
     /// Too few numbers.
-    #[error("line {line}: {what} needs {expected} numbers, found {found}")]
+    #[error("{what} needs {expected} numbers, found {found}")]
     TooFewNumbers {
         /// Where.
         line: u32,
@@ -60,7 +61,7 @@ pub enum ImportError {
         found: u32,
     },
     /// The corner of a face is not of the form `v`, `v/vt`, `v//vn` or `v/vt/vn`.
-    #[error("line {line}: `{text}` is not the corner of a face")]
+    #[error("`{text}` is not the corner of a face")]
     BadCorner {
         /// Where.
         line: u32,
@@ -68,7 +69,7 @@ pub enum ImportError {
         text: String,
     },
     /// Index 0.
-    #[error("line {line}: index 0 in `{text}`; indices count from 1")]
+    #[error("index 0 in `{text}`; indices count from 1")]
     IndexZero {
         /// Where.
         line: u32,
@@ -76,7 +77,7 @@ pub enum ImportError {
         text: String,
     },
     /// An index beyond the end, or a relative one before the beginning.
-    #[error("line {line}: {what} {index} does not exist; {}", if *index < 0 {
+    #[error("{what} {index} does not exist; {}", if *index < 0 {
         format!("only {count} come before it")
     } else {
         format!("the file has {count}")
@@ -126,7 +127,7 @@ pub enum ImportError {
         length: usize,
     },
     /// A text STL file breaks its grammar.
-    #[error("line {line}: expected {expected}, found {}", if found.is_empty() { "the end of the file".to_owned() } else { format!("`{found}`") })]
+    #[error("expected {expected}, found {}", if found.is_empty() { "the end of the file".to_owned() } else { format!("`{found}`") })]
     Unexpected {
         /// Where.
         line: u32,

@@ -20,7 +20,8 @@ pub use foreign::{Foreign, recognize};
 pub struct ImportOptions {
     /// Only the faces of this group, object or solid.
     pub group: Option<String>,
-    /// Join points that are within this distance, in the units of the file. STL joins equal points in any case.
+    /// Join points that are within this distance, in the units of the file; 0 joins equal points. Without it OBJ points
+    /// stay as they are, and STL points are joined within rounding.
     pub weld: Option<f64>,
 }
 

@@ -1,6 +1,6 @@
 //! STL, binary and text: facets, welded into a connected mesh.
 //!
-//! STL repeats every point in every facet; equal points are joined. It also stores a normal for each facet, which
+//! STL repeats every point in every facet; points that are equal but for rounding are joined. It also stores a normal for each facet, which
 //! says nothing that the order of the corners does not: where they disagree the order wins, and a note tells how
 //! often.
 
@@ -9,8 +9,9 @@ mod text;
 use glam::DVec3;
 
 use super::{ImportError, ImportOptions, Imported, Note};
-use crate::geometry::mesh::weld::{Welded, weld_equal, weld_near};
+use crate::geometry::mesh::weld::{Welded, weld_near};
 use crate::geometry::mesh::{PolygonMesh, polygon};
+use crate::geometry::number::{Bounds, single_rounding};
 
 /// Bytes before the facets of a binary file: a free header and the count.
 const HEADER: usize = 84;
@@ -24,8 +25,8 @@ struct Facet {
     corners: [DVec3; 3],
 }
 
-/// Reads an STL file. Equal points are joined, and with [`ImportOptions::weld`] near ones too. Linear in the length of
-/// the file, in time and memory.
+/// Reads an STL file. Points within [`ImportOptions::weld`] of each other are joined, by default within the rounding of
+/// single precision at the size of the model. Linear in the length of the file, in time and memory.
 ///
 /// A file is binary when its length fits the count in its header, whatever the header says, and text when it begins
 /// with `solid` and goes on as text.
@@ -121,8 +122,11 @@ fn imported(
     Imported { mesh, materials: Vec::new(), groups: solids, notes }
 }
 
+/// Joins points. Without a wish, those that single precision at the size of the model cannot tell apart: programs
+/// write 0 in one facet and 1e-17 in the next.
 fn weld(points: &[DVec3], tolerance: Option<f64>) -> Welded {
-    tolerance.map_or_else(|| weld_equal(points), |tolerance| weld_near(points, tolerance))
+    let reach = Bounds::of_points(points.iter().copied()).reach();
+    weld_near(points, tolerance.unwrap_or_else(|| single_rounding(reach)))
 }
 
 /// A note when stored normals point against the order of the corners.

@@ -176,9 +176,9 @@ fn bounds_of(positions: &[[f32; 3]]) -> Option<Box3> {
     let first = *positions.first()?;
     let mut bounds = Box3 { min: first, max: first };
     for position in positions {
-        for axis in 0..3 {
-            bounds.min[axis] = bounds.min[axis].min(position[axis]);
-            bounds.max[axis] = bounds.max[axis].max(position[axis]);
+        for (axis, &value) in position.iter().enumerate() {
+            bounds.min[axis] = bounds.min[axis].min(value);
+            bounds.max[axis] = bounds.max[axis].max(value);
         }
     }
     Some(bounds)

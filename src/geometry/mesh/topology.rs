@@ -57,7 +57,7 @@ pub struct TooLarge {
 /// Measures the triangles whose `3 * triangles` corners stand on `point_of(corner)`, each below `points`.
 ///
 /// Edges that join a point to itself are left out. Linear in time (sorting the edges of one point adds a logarithm
-/// of their number); at its peak 42 bytes for each triangle.
+/// of their number); at its peak about 43 bytes for each triangle.
 ///
 /// # Errors
 /// [`TooLarge`] from 2^31 / 3 triangles on.
@@ -106,7 +106,7 @@ fn next(corner: u32) -> u32 {
 
 /// The corner before a corner in its triangle.
 fn before(corner: u32) -> u32 {
-    if corner % 3 == 0 { corner + 2 } else { corner - 1 }
+    if corner.is_multiple_of(3) { corner + 2 } else { corner - 1 }
 }
 
 /// Which edges run back along which.
@@ -130,14 +130,16 @@ struct Buckets {
 impl Buckets {
     fn new(points: usize, triangles: usize, point_of: &impl Fn(usize) -> u32) -> Self {
         let mut starts = vec![0_u32; points + 1];
-        let mut used = vec![0_u64; points / 64 + 1];
+        let mut used = vec![false; points];
         let mut self_edges = 0;
-        for [a, b] in edges(triangles, point_of) {
-            used[a as usize / 64] |= 1 << (a % 64);
-            if a == b {
-                self_edges += 1;
-            } else {
-                starts[a.min(b) as usize] += 1;
+        for triangle in 0..triangles {
+            for [a, b] in edges_of(triangle, point_of) {
+                used[a as usize] = true;
+                if a == b {
+                    self_edges += 1;
+                } else {
+                    starts[a.min(b) as usize] += 1;
+                }
             }
         }
         let mut total = 0;
@@ -147,25 +149,28 @@ impl Buckets {
             *start = total;
         }
         let mut keys = vec![0_u64; total as usize];
-        for (corner, [a, b]) in (0_u64..).zip(edges(triangles, point_of)) {
-            if a != b {
-                let place = &mut starts[a.min(b) as usize];
-                *place -= 1;
-                let direction = if a > b { BACKWARD } else { 0 };
-                keys[*place as usize] = u64::from(a.max(b)) << 32 | direction | corner;
+        let mut corner = 0_u64;
+        for triangle in 0..triangles {
+            for [a, b] in edges_of(triangle, point_of) {
+                if a != b {
+                    let place = &mut starts[a.min(b) as usize];
+                    *place -= 1;
+                    let direction = if a > b { BACKWARD } else { 0 };
+                    keys[*place as usize] = u64::from(a.max(b)) << 32 | direction | corner;
+                }
+                corner += 1;
             }
         }
-        let points = used.iter().map(|word| u64::from(word.count_ones())).sum();
+        let points = used.into_iter().filter(|&used| used).count() as u64;
         Self { starts, keys, self_edges, points }
     }
 }
 
-/// The edges in the order of their corners.
-fn edges(triangles: usize, point_of: &impl Fn(usize) -> u32) -> impl Iterator<Item = [u32; 2]> {
-    (0..triangles).flat_map(move |triangle| {
-        let [a, b, c] = [0, 1, 2].map(|step| point_of(3 * triangle + step));
-        [[a, b], [b, c], [c, a]]
-    })
+/// The edges of a triangle in the order of their corners.
+#[inline]
+fn edges_of(triangle: usize, point_of: &impl Fn(usize) -> u32) -> [[u32; 2]; 3] {
+    let [a, b, c] = [0, 1, 2].map(|step| point_of(3 * triangle + step));
+    [[a, b], [b, c], [c, a]]
 }
 
 fn pair(
@@ -207,7 +212,6 @@ fn sort_short(keys: &mut [u64]) {
 }
 
 /// The corner in a key.
-#[expect(clippy::cast_possible_truncation, reason = "the mask leaves 31 bits")]
 fn corner_in(key: u64) -> u32 {
     (key & (BACKWARD - 1)) as u32
 }

@@ -378,7 +378,21 @@ impl Reader<'_> {
         }
     }
 
+    /// Some programs write indices of texture coordinates or normals and then none of these at all.
+    fn forget_missing_attributes(&mut self) {
+        for (kind, what) in KINDS.into_iter().enumerate().skip(1) {
+            if let Some((line, _)) = self.ahead[kind].filter(|_| self.counts[kind] == 0) {
+                let has = if kind == 1 { &mut self.scan.has_uv } else { &mut self.scan.has_normal };
+                has.fill(false);
+                self.ahead[kind] = None;
+                let message = format!("faces name {what}s, but the file has none");
+                self.scan.notes.push(Note { line: Some(line), message });
+            }
+        }
+    }
+
     fn finish(mut self) -> Result<Scan, ImportError> {
+        self.forget_missing_attributes();
         for (kind, what) in KINDS.into_iter().enumerate() {
             let count = self.counts[kind];
             if let Some((line, index)) = self.ahead[kind]

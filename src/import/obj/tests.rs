@@ -15,6 +15,11 @@ fn group(source: &str, group: &str) -> Result<Imported, ImportError> {
     read(source.as_bytes(), &options, &mut |_| None)
 }
 
+/// The message with its place, as a diagnostic shows it.
+fn told(error: &ImportError) -> String {
+    error.line().map_or_else(|| error.to_string(), |line| format!("line {line}: {error}"))
+}
+
 const QUAD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 fn on_quad(rest: &str) -> Result<Imported, ImportError> {
@@ -64,6 +69,20 @@ fn attributes_only_where_they_are_given() {
         [true, true, false, false, true, true, true]
     );
     assert!(on_quad("vt 0 0\nf 1 2 3").expect("good").mesh.corner_uvs.is_empty());
+}
+
+#[test]
+fn attributes_that_are_missing_altogether_are_forgotten() {
+    let read = on_quad("f 1/1/3 2/2/2 3/3/1").expect("good");
+    assert!(read.mesh.corner_uvs.is_empty() && read.mesh.corner_normals.is_empty());
+    let notes: Vec<&str> = read.notes.iter().map(|note| note.message.as_str()).collect();
+    assert_eq!(
+        notes,
+        [
+            "faces name texture coordinates, but the file has none",
+            "faces name normals, but the file has none"
+        ]
+    );
 }
 
 #[test]
@@ -161,7 +180,7 @@ fn what_is_passed_over_is_told_once() {
 #[test]
 fn a_wrong_vertex_is_an_error_when_it_is_used() {
     assert!(on_quad("v 1 2 3.1+e2\nv nan 0 0\nv 1\nf 1 2 3").is_ok());
-    let message = |rest| on_quad(rest).expect_err("a wrong vertex").to_string();
+    let message = |rest| told(&on_quad(rest).expect_err("a wrong vertex"));
     assert_eq!(
         message("v 1 2 3.1+e2\nf 1 2 5"),
         "line 5: expected a number for the z coordinate of a vertex, found `3.1+e2`"
@@ -175,7 +194,7 @@ fn a_wrong_vertex_is_an_error_when_it_is_used() {
 
 #[test]
 fn faults_in_faces() {
-    let message = |rest| on_quad(rest).expect_err("a fault").to_string();
+    let message = |rest| told(&on_quad(rest).expect_err("a fault"));
     assert_eq!(message("f 1 2 0"), "line 5: index 0 in `0`; indices count from 1");
     assert_eq!(message("f 1 2 5"), "line 5: vertex 5 does not exist; the file has 4");
     assert_eq!(
@@ -187,7 +206,10 @@ fn faults_in_faces() {
         message("f 1 2 99999999999999999999"),
         "line 5: vertex 99999999999999999999 does not exist; the file has 4"
     );
-    assert_eq!(message("f 1/1 2/1 3/1"), "line 5: texture coordinate 1 does not exist; the file has 0");
+    assert_eq!(
+        message("vt 0 0\nf 1/1 2/1 3/2"),
+        "line 6: texture coordinate 2 does not exist; the file has 1"
+    );
     assert_eq!(message("f 1//2 2//2 3//2\nvn 0 0 1"), "line 5: normal 2 does not exist; the file has 1");
     for corner in ["x", "/1", "1/2/3/4", "1.5", "--1", "+", "1/x", "0x1", "1_0"] {
         let expected = ImportError::BadCorner { line: 5, text: corner.to_owned() };

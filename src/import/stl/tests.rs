@@ -9,6 +9,11 @@ fn plain(bytes: &[u8]) -> Result<Imported, ImportError> {
     read(bytes, &ImportOptions::default())
 }
 
+/// The message with its place, as a diagnostic shows it.
+fn told(error: &ImportError) -> String {
+    error.line().map_or_else(|| error.to_string(), |line| format!("line {line}: {error}"))
+}
+
 /// A binary file of these facets: normal and corners.
 fn binary(header: &[u8], facets: &[[[f32; 3]; 4]]) -> Vec<u8> {
     let mut bytes = header.to_vec();
@@ -109,15 +114,12 @@ fn numbers_that_are_not_finite() {
     strange[0][0] = [f32::NAN, 0.0, f32::INFINITY];
     assert!(plain(&binary(b"", &strange)).expect("good").notes.is_empty());
     let text = TEXT.replace("1E0", "1e999");
-    assert_eq!(
-        plain(text.as_bytes()).expect_err("infinite").to_string(),
-        "line 11: `inf` is not a finite number"
-    );
+    assert_eq!(told(&plain(text.as_bytes()).expect_err("infinite")), "line 11: `inf` is not a finite number");
 }
 
 #[test]
 fn text_that_breaks_off() {
-    let message = |text: &str| plain(text.as_bytes()).expect_err("broken").to_string();
+    let message = |text: &str| told(&plain(text.as_bytes()).expect_err("broken"));
     let facet = "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n";
     assert_eq!(message(&format!("{facet}endloop\nendfacet")), "line 6: expected vertex, found `endloop`");
     assert_eq!(message(facet), "line 6: expected vertex, found the end of the file");

@@ -179,7 +179,7 @@ fn keys_are_kebab_case() {
     let facts = measure(&cuboid([0.0; 3], [1.0; 3]), &CUBE_INDICES).expect("good");
     let json = serde_json::to_value(&facts).expect("plain data");
     assert_eq!(json["boundary-edges"], 0);
-    assert_eq!(json["mass"], "solid");
+    assert_eq!(json["inertia-of"], "solid");
     assert_eq!(json["bounds"]["max"][0], 1.0);
 }
 

@@ -154,8 +154,8 @@ impl<'a> Edges<'a> {
     fn with_own_corners(&self, boundary: &Boundary) -> Option<Vec<[u32; 3]>> {
         let mut named = self.triangles.clone();
         for (number, triangle) in named.iter_mut().enumerate() {
-            for side in 0..3 {
-                triangle[side] = self.own_corner(boundary, number, side)?;
+            for (side, corner) in triangle.iter_mut().enumerate() {
+                *corner = self.own_corner(boundary, number, side)?;
             }
         }
         Some(named)
