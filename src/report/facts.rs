@@ -32,6 +32,7 @@ pub struct MeshFacts {
     /// Cubic metres, negative when the surface is inside out; none unless the mesh is closed.
     pub volume: Option<f64>,
     /// What `centroid` and `inertia` are of.
+    #[serde(rename = "inertia-of")]
     pub mass: Mass,
     /// Center of mass, metres; none when there is neither volume nor area.
     pub centroid: Option<[f64; 3]>,

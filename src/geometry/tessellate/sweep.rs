@@ -46,7 +46,6 @@ pub fn sweep(shape: &Sweep, detail: &Detail) -> Result<Tessellation, TessellateE
     // itself: the exponent is taken from the last two trials.
     let mut aim = tolerance / 2.0;
     let mut exponent = 1.0;
-    let mut stalls = 0;
     let mut plan = Plan::new(shape, &surface, detail, aim)?;
     for _ in 0..10 {
         let bound = plan.deviation.bound;
@@ -57,11 +56,10 @@ pub fn sweep(shape: &Sweep, detail: &Detail) -> Result<Tessellation, TessellateE
         let finer = Plan::new(shape, &surface, detail, next)?;
         // Where a mitre leaves no room for rows, more rows elsewhere do not help.
         if finer.deviation.bound > 0.98 * bound {
-            stalls += 1;
-            aim = next * 0.7;
-            if stalls == 3 {
+            if finer.path.len() > 4 * plan.path.len() {
                 break;
             }
+            aim = next * 0.5;
             continue;
         }
         exponent = (ln(finer.deviation.bound / bound) / ln(next / aim)).clamp(0.25, 1.0);

@@ -142,4 +142,50 @@ examples! {
     FaceCorners: "A face needs at least three corners, all different.",
         "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[0, 1, 1]]" =>
         "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[0, 1, 2]]";
+    AcrossAxis: "A profile that is turned about the y axis stays on one side of it: x is the radius. A profile that ends on the axis ends at x = 0.",
+        "[shape.a.revolve]\nprofile = { polyline = { points = [[-0.1, 0], [1, 0], [1, 1]] } }" =>
+        "[shape.a.revolve]\nprofile = { polyline = { points = [[0, 0], [1, 0], [1, 1]] } }";
+    OpenProfile: "A solid with flat ends needs an outline that comes back to its start.",
+        "[shape.a.extrude]\nprofile = { polyline = { points = [[0, 0], [1, 0], [1, 1]] } }\nheight = 1" =>
+        "[shape.a.extrude]\nprofile = { polyline = { points = [[0, 0], [1, 0], [1, 1]], closed = true } }\nheight = 1";
+    SelfCrossing: "An outline that crosses or touches itself has no inside. The message names the place and the parameters of the curve.",
+        "[shape.a.extrude]\nprofile = { polyline = { points = [[0, 0], [1, 1], [1, 0], [0, 1]], closed = true } }\nheight = 1" =>
+        "[shape.a.extrude]\nprofile = { polyline = { points = [[0, 0], [1, 0], [1, 1], [0, 1]], closed = true } }\nheight = 1";
+    NoArea: "A profile on the axis, or an outline whose points lie on one line, sweeps no surface.",
+        "[shape.a.revolve]\nprofile = { line = { from = [0, 0], to = [0, 1] } }" =>
+        "[shape.a.revolve]\nprofile = { line = { from = [1, 0], to = [1, 1] } }";
+    BrokenJoint: "A joint of a path that is declared \"smooth\" is proved: both segments must have one direction there.",
+        "[curve.a.path]\nstart = [0, 0]\nsegments = [{ line = [[1, 0]] }, { line = [[1, 1]] }]\njoints = [\"smooth\"]" =>
+        "[curve.a.path]\nstart = [0, 0]\nsegments = [{ line = [[1, 0]] }, { arc = { center = [1, 1], angle = 90 } }]\njoints = [\"smooth\"]\n[shape.b.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = \"a\"";
+    Reversal: "Where a path turns back on itself a section has no plane to stand in. Round such a corner with an arc or a spline.",
+        "[shape.a.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = { polyline = { points = [[0, 0], [1, 0], [0, 0.01]] } }" =>
+        "[shape.a.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = { polyline = { points = [[0, 0], [1, 0], [1, 1]] } }";
+    NotFlat: "Profiles and outlines lie in the x, y plane: two numbers a point. Only paths go through space.",
+        "[shape.a.revolve]\nprofile = { line = { from = [1, 0, 0], to = [1, 1, 1] } }" =>
+        "[shape.a.revolve]\nprofile = { line = { from = [1, 0], to = [1, 1] } }";
+    BadHole: "Holes lie inside their outline and apart from each other.",
+        "[shape.a.extrude]\nprofile = { circle = { radius = 1 } }\nholes = [{ circle = { radius = 0.5, center = [1, 0] } }]\nheight = 1" =>
+        "[shape.a.extrude]\nprofile = { circle = { radius = 1 } }\nholes = [{ circle = { radius = 0.5 } }]\nheight = 1";
+    TightBend: "The mesh could not be brought within the tolerance of the true surface, most often beside a sharp corner of a path. The report carries the distance that was reached. Round the corner, or make the section smaller.",
+        "" => "";
+    BadMesh: "Polygons refer to points that are not there or have coordinates that are no numbers.",
+        "" => "";
+    ImportFailed: "A file is damaged or cut off. The message names its line and value. Export it again.",
+        "" => "";
+    ImportNote: "Something in an imported file was passed over or put right; the notes say what and where.",
+        "" => "";
+    UnsupportedFormat: "Only Wavefront OBJ (text) and STL are imported. The message says what the file is and what to export instead.",
+        "" => "";
+    BadImage: "Textures are PNG or JPEG, whole, and not larger than `image-pixels` in [limits]. Sizes are checked before anything is decoded.",
+        "" => "";
+    UnknownPart: "An imported file has no group or material of the name that is asked for; the notes list those it has.",
+        "" => "";
+    LimitPassed: "The asset would have more triangles, vertices or bytes than [limits] or the machine's owner allows. Nothing was made: the count is known before memory is taken.",
+        "[limits]\ntriangles = 100\n[shape.a.sphere]\nradius = 1" => "[shape.a]\nsegments = 8\n[shape.a.sphere]\nradius = 1\n[limits]\ntriangles = 200";
+    NothingToShow: "A document needs a shape, and where it has nodes at least one of them must show one.",
+        "[material.clay]" => "[shape.a.sphere]\nradius = 1";
+    AssertionFailed: "What [assert] demands does not hold of the result. Nothing was written.",
+        "[shape.a.box]\nsize = [1, 1, 1]\n[assert]\ntriangles = 10" => "[shape.a.box]\nsize = [1, 1, 1]\n[assert]\ntriangles = 12";
+    UnknownFact: "Keys of [assert] are paths of the report: `triangles`, `shapes.NAME.area`, `totals.draw-calls`. With one shape its facts need no path.",
+        "[shape.a.box]\nsize = [1, 1, 1]\n[assert]\ntrianglez = 12" => "[shape.a.box]\nsize = [1, 1, 1]\n[assert]\ntriangles = 12";
 }
