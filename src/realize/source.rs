@@ -94,18 +94,52 @@ fn collect(model: &Model, handle: ShapeHandle, outer: &DAffine3, all: &mut Vec<S
     }
 }
 
-/// A range of parameters in which the nearest point is looked for.
+/// Parameters of the corners of a triangle: the nearest point is looked for around them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// Least u and v.
-    pub low: (f64, f64),
-    /// Greatest u and v.
-    pub high: (f64, f64),
+    /// u of each corner.
+    pub u: [f64; 3],
+    /// v of each corner.
+    pub v: [f64; 3],
+}
+
+/// Ranges of a curve's parameter around those of a triangle's corners, as wide again to both sides: a chord
+/// lies inside its arc, and the point nearest to it may belong to the next. Around a closed curve the corners
+/// may stand on both sides of the seam, and a range that leaves the domain comes back at the other end.
+fn ranges(curve: &AnyCurve, corners: [f64; 3]) -> Vec<(f64, f64)> {
+    let domain = curve.domain();
+    let period = domain.span();
+    let closed = curve.is_closed();
+    let wide = |values: [f64; 3]| {
+        let low = values.into_iter().fold(f64::INFINITY, f64::min);
+        let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        (low, high)
+    };
+    let (mut low, mut high) = wide(corners);
+    if closed && high - low > period / 2.0 {
+        let middle = domain.start + period / 2.0;
+        (low, high) = wide(corners.map(|value| if value < middle { value + period } else { value }));
+    }
+    let margin = (high - low).max(1e-6 * period);
+    (low, high) = (low - margin, high + margin);
+    let mut ranges = vec![(low.clamp(domain.start, domain.end), high.clamp(domain.start, domain.end))];
+    if closed && low < domain.start {
+        ranges.push(((low + period).max(domain.start), domain.end));
+    }
+    if closed && high > domain.end {
+        ranges.push((domain.start, (high - period).min(domain.end)));
+    }
+    ranges
+}
+
+fn distance_near(curve: &AnyCurve, point: DVec3, corners: [f64; 3]) -> f64 {
+    let ranges = ranges(curve, corners);
+    ranges.iter().map(|(from, to)| distance_within(curve, point, *from, *to)).fold(f64::INFINITY, f64::min)
 }
 
 impl Source {
-    /// Distance from a point of the written mesh to the nearest point of this surface within a window of its
-    /// parameters: never less than the distance to the whole surface.
+    /// Distance from a point of the written mesh to the nearest point of this surface near the
+    /// parameters of a triangle: never less than the distance to the whole surface.
     #[must_use]
     pub fn distance(&self, point: DVec3, window: &Window) -> f64 {
         let local = self.back.transform_point3(point);
@@ -114,11 +148,11 @@ impl Source {
             Kind::Revolved(profile) => {
                 let radius = hypot(local.x, local.z);
                 let flat = DVec3::new(radius, local.y, 0.0);
-                distance_within(profile, flat, window.low.1, window.high.1)
+                distance_near(profile, flat, window.v)
             }
             Kind::Extruded(outline) => {
                 let flat = DVec3::new(local.x, local.y, 0.0);
-                distance_within(outline, flat, window.low.0, window.high.0)
+                distance_near(outline, flat, window.u)
             }
             Kind::Swept(surface) => swept_distance(surface, local, window),
         };
@@ -129,23 +163,25 @@ impl Source {
 /// The section that holds the point is found by Newton's method on its place along the path; the rest is a
 /// distance in the plane of that section.
 fn swept_distance(surface: &SweptSurface, point: DVec3, window: &Window) -> f64 {
-    let (low, high) = (window.low.1, window.high.1);
+    let along = ranges(&surface.path, window.v);
+    along.iter().map(|range| swept_within(surface, point, *range, window.u)).fold(f64::INFINITY, f64::min)
+}
+
+fn swept_within(surface: &SweptSurface, point: DVec3, (low, high): (f64, f64), across: [f64; 3]) -> f64 {
     let mut v = (low + high) / 2.0;
     for _ in 0..8 {
         let section = surface.section(v, Side::After);
         let away = point - section.origin;
-        let ahead = away.dot(section.frame.along);
         let lean = 1.0 - away.dot(section.curvature);
         if lean <= 0.0 {
             break;
         }
-        v = (v + ahead / (section.speed * lean)).clamp(low, high);
+        v = (v + away.dot(section.frame.along) / (section.speed * lean)).clamp(low, high);
     }
-    let side = if v >= high { Side::Before } else { Side::After };
-    let section = surface.section(v, side);
+    let section = surface.section(v, if v >= high { Side::Before } else { Side::After });
     let away = point - section.origin;
     let flat = DVec3::new(away.dot(section.frame.side), away.dot(section.frame.up), 0.0);
-    let across = distance_within(&surface.profile, flat, window.low.0, window.high.0);
+    let across = distance_near(&surface.profile, flat, across);
     hypot(across, away.dot(section.frame.along))
 }
 

@@ -27,7 +27,7 @@ const SAMPLES: [[f64; 3]; 13] = [
 ];
 
 /// The greatest distance from samples of the written triangles to the exact surface, metres. Each sample looks
-/// for its nearest point in the range of parameters that its triangle's corners span, so the result is local:
+/// for its nearest point near the parameters of its triangle's corners, so the result is local:
 /// a sheet that lies near by does not hide a gap.
 #[must_use]
 pub fn measure_deviation(
@@ -52,9 +52,7 @@ pub fn measure_deviation(
 fn of_triangle(triangle: &[u32], geometry: &Geometry, anchors: &[Anchor], sources: &Sources) -> f64 {
     let corners = [0, 1, 2].map(|corner| anchors[triangle[corner] as usize]);
     let Some(source) = sources.get(corners[0].source) else { return 0.0 };
-    let least = |of: fn(&Anchor) -> f64| corners.iter().map(of).fold(f64::INFINITY, f64::min);
-    let most = |of: fn(&Anchor) -> f64| corners.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
-    let window = Window { low: (least(|a| a.u), least(|a| a.v)), high: (most(|a| a.u), most(|a| a.v)) };
+    let window = Window { u: corners.map(|anchor| anchor.u), v: corners.map(|anchor| anchor.v) };
     let places = [0, 1, 2].map(|corner| {
         let [x, y, z] = geometry.positions[triangle[corner] as usize].map(f64::from);
         DVec3::new(x, y, z)
