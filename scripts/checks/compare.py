@@ -169,9 +169,7 @@ def missing(asset: str, report: Facts) -> Iterator[Finding]:
     """A finding for each claim that every report must make."""
     demands = [("totals", REQUIRED_OF_TOTALS, report.get("totals", {}))]
     demands += [("file", ("name", "bytes", "blake3"), report.get("file", {}))]
-    demands += [
-        (f"shapes.{name}", REQUIRED_OF_SHAPE, claims) for name, claims in report.get("shapes", {}).items()
-    ]
+    demands += [(f"shapes.{name}", REQUIRED_OF_SHAPE, claims) for name, claims in report.get("shapes", {}).items()]
     if not report.get("shapes"):
         yield failure(asset, "report", "the report names no shape")
     for place, wanted, claims in demands:

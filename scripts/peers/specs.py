@@ -62,8 +62,7 @@ def kiln_profile() -> str:
 def kiln_vase(along: int, around: int) -> str:
     """The vase on a fixed grid."""
     return (
-        f"{kiln_profile()}[shape.vase]\nsegments = [{along}, {around}]\n\n"
-        '[shape.vase.revolve]\nprofile = "outline"\n'
+        f'{kiln_profile()}[shape.vase]\nsegments = [{along}, {around}]\n\n[shape.vase.revolve]\nprofile = "outline"\n'
     )
 
 

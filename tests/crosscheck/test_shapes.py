@@ -71,17 +71,16 @@ profile = "p"
 angle = 90
 """
     shape = kiln.bake(spec).shape("s")
-    assert shape["volume"] == pytest.approx(
-        np.pi / 2 * 1.5, rel=1e-3
-    )  # Pappus: area times the centroid's way
+    assert shape["volume"] == pytest.approx(np.pi / 2 * 1.5, rel=1e-3)  # Pappus: area times the centroid's way
     assert shape["area"] == pytest.approx(np.pi / 2 * 1.5 * 4 + 2, rel=1e-3)
     assert shape["closed"]
     assert shape["genus"] == 0
 
 
 def test_wine_glass_by_quadrature_of_its_spline(kiln: Kiln) -> None:
-    from sampled import revolved
     from scipy.interpolate import CubicSpline
+
+    from sampled import revolved
 
     points = np.array([[0.5, 0.0], [0.1, 0.3], [0.08, 1.0], [0.5, 1.5], [0.6, 2.0], [0.45, 2.4]])
     spline = CubicSpline(np.linspace(0, 1, len(points)), points, bc_type="natural")
