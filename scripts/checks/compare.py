@@ -31,7 +31,7 @@ COUNTS = {
 }  # fmt: skip
 REQUIRED_OF_SHAPE = (
     "primitives", "triangles", "vertices", "points", "bounds", "area", "volume", "centroid", "inertia",
-    "mass", "closed", "manifold", "components", "euler", "genus", "boundary-edges", "boundary-loops",
+    "inertia-of", "closed", "manifold", "components", "euler", "genus", "boundary-edges", "boundary-loops",
     "crowded-edges", "misoriented-edges", "degenerate-triangles", "acmr", "atvr", "deviation",
 )  # fmt: skip
 REQUIRED_OF_TOTALS = (
@@ -148,7 +148,7 @@ def claim_for(fact: str, claims: Facts) -> tuple[str, Any] | None:
     if kind == "proper":
         return proper(rest, claims)
     if kind in ("solid", "surface") and rest in ("centroid", "inertia"):
-        return (rest, claims.get(rest)) if claims.get("mass") == kind else None
+        return (rest, claims.get(rest)) if claims.get("inertia-of") == kind else None
     if fact == "closed-volume":
         return ("volume", claims.get("volume")) if claims.get("closed") else None
     known = fact in COUNTS or fact in ("bounds", "area", "volume", "acmr", "atvr")
@@ -211,7 +211,7 @@ def unmeasured(asset: str, report: Facts, findings: list[Finding]) -> Iterator[F
     """
     spoken = {finding.place for finding in findings if finding.tool != "report"}
     for name, claims in report.get("shapes", {}).items():
-        silent = {"mass", "deviation"}
+        silent = {"inertia-of", "deviation"}
         if not claims.get("manifold"):
             silent |= {"volume", "genus", "boundary-loops"}
         for fact in REQUIRED_OF_SHAPE:

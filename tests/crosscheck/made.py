@@ -202,7 +202,7 @@ def common(arrays: Vertices, points: int, euler: int, genus: int) -> dict[str, A
         "vertices": len(positions),
         "points": points,
         "bounds": {"min": written.min(axis=0).tolist(), "max": written.max(axis=0).tolist()},
-        "mass": "solid",
+        "inertia-of": "solid",
         "closed": True,
         "manifold": True,
         "components": 1,

@@ -38,8 +38,8 @@ NO_FACE = {
     "obj/assimp_point_cloud.obj", "obj/face_in_group_name.obj", "obj/obj_empty.obj", "obj/obj_points.obj",
     "stl/stl_empty_ascii.stl",
 }  # fmt: skip
-# A corner that names a vertex beyond the last one.
-BROKEN = {"obj/bad/malformed.obj"}
+# Corners that name a vertex or a texture coordinate beyond the last one.
+BROKEN = {"obj/bad/malformed.obj", "obj/cubevt.obj"}
 # All triangles of this file have no area.
 FLAT = {"obj/assimp_number_formats.obj", "csg/Cray_right.obj"}
 # Faces with repeated corners or concave outlines, where fans (the facts' way) measure something else.
@@ -58,7 +58,12 @@ def test_real_files_measure_as_trimesh_does(kiln: Kiln, cases: Path) -> None:
     for name, found in facts(cases).items():
         if name in FLAT | BROKEN | NO_FACE or not wanted(found):
             continue
-        asset = kiln.bake(spec(bring(cases, name, kiln.folder)))
+        kiln.write(spec(bring(cases, name, kiln.folder)))
+        done = kiln.run("bake", "model.toml", "--out", "out")
+        if done.returncode != 0:
+            wrong.append(f"{name}: {done.stderr.splitlines()[0]}")
+            continue
+        asset = kiln.baked()
         read += 1
         shape = asset.shape("s")
         wrong += [f"{name}: {text}" for text in differences(name, shape, found)]
@@ -81,7 +86,7 @@ def differences(name: str, shape: dict[str, Any], found: dict[str, Any]) -> list
             wrong.append(f"area {shape['area']} {found['area']}")
         if found["watertight"] and not shape["closed"]:
             wrong.append("is not closed")
-        if found["watertight"] and "volume" in found:
+        elif found["watertight"] and "volume" in found:
             off = abs(abs(shape["volume"]) - abs(found["volume"]))
             if off > folded * abs(found["volume"]) + 1e-6 * found["area"] * size:
                 wrong.append(f"volume {shape['volume']} {found['volume']}")
