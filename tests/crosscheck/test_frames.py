@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from sampled import volume
 from scipy.integrate import solve_ivp
+
+from sampled import volume
 
 if TYPE_CHECKING:
     from pathlib import Path
