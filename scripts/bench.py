@@ -210,9 +210,7 @@ def memory(folder: Path, steps: list[float]) -> Part:
 
 def tables(figures: dict[str, Any]) -> str:
     """The figures as Markdown."""
-    blocks = [
-        f"Measured on {figures['machine']}, {figures['date']}, median of {figures['runs']} whole processes."
-    ]
+    blocks = [f"Measured on {figures['machine']}, {figures['date']}, median of {figures['runs']} whole processes."]
     cases = [case for case in ("vase", "sweep") if case in figures]
     blocks += [grid_table(case, figures[case]["rows"]) for case in cases]
     if "tolerance" in figures:

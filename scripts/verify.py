@@ -50,9 +50,7 @@ def main() -> int:
 def arguments() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(prog="scripts/verify.py", description=__doc__.split("\n\n")[0])
-    parser.add_argument(
-        "paths", nargs="+", type=Path, metavar="OUT", help="folders of baked assets, or .glb files"
-    )
+    parser.add_argument("paths", nargs="+", type=Path, metavar="OUT", help="folders of baked assets, or .glb files")
     parser.add_argument("--no-report", action="store_true", help="only show what the tools find")
     parser.add_argument("--pictures", action="store_true", help="draw each asset with Blender")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="tools run at one time")
@@ -98,9 +96,7 @@ def draw(folder: Path, files: list[tuple[Path, str]]) -> dict[str, Path]:
     return pictures
 
 
-def write_json(
-    target: Path, findings: dict[str, list[Finding]], measured: dict[Path, list[Measured]]
-) -> None:
+def write_json(target: Path, findings: dict[str, list[Finding]], measured: dict[Path, list[Measured]]) -> None:
     """Write every finding, in the one format, with the versions of the tools."""
     versions = {one.tool: one.version for found in measured.values() for one in found if one.version}
     everything = [finding.as_json() for found in findings.values() for finding in found]
@@ -110,9 +106,7 @@ def write_json(
     target.write_text(text + "\n", encoding="utf-8")
 
 
-def show_findings(
-    findings: dict[str, list[Finding]], measured: dict[str, list[Measured]], folder: Path
-) -> int:
+def show_findings(findings: dict[str, list[Finding]], measured: dict[str, list[Measured]], folder: Path) -> int:
     """Print the table, then each disagreement; returns the exit code."""
     rows = [["asset", "triangles", "bytes", *tools.TOOLS, "report"]]
     rows += [row(name, found, measured[name]) for name, found in findings.items()]
@@ -122,9 +116,7 @@ def show_findings(
         errors += finding.severity == "error"
         print(describe(finding))
     total = sum(map(len, findings.values()))
-    print(
-        f"verify: {len(findings)} assets, {total} comparisons, {errors} disagreements; {folder}/verify.html"
-    )
+    print(f"verify: {len(findings)} assets, {total} comparisons, {errors} disagreements; {folder}/verify.html")
     return 1 if errors else 0
 
 
@@ -145,9 +137,7 @@ def describe(finding: Finding) -> str:
     if finding.message:
         return f"{head}{finding.tool}: {finding.message}"
     found, claimed = page.shown(finding.found), page.shown(finding.claimed)
-    allowed = (
-        f" (difference {finding.difference:.3g}, allowed {finding.allowed:.3g})" if finding.allowed else ""
-    )
+    allowed = f" (difference {finding.difference:.3g}, allowed {finding.allowed:.3g})" if finding.allowed else ""
     return f"{head}{finding.tool} finds {found}, the report says {claimed}{allowed}"
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import bpy  # isort: skip -- the wheel makes bmesh importable
 import bmesh
+from mathutils import Matrix
 
 from checks import finding
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 TOOL = "blender"
+TO_GLTF = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
 
 
 def measure(path: Path) -> finding.Measured:
@@ -32,13 +34,20 @@ def measure(path: Path) -> finding.Measured:
         "bounds": box(item.matrix_world @ vertex.co for item in shown for vertex in item.data.vertices),
     }
     shapes = {name: shape(mesh) for name, mesh in meshes.items()}
-    return finding.Measured(TOOL, bpy.app.version_string, str(path), totals, shapes)
+    nodes = {item.name: world(item) for item in bpy.context.scene.objects}
+    return finding.Measured(TOOL, bpy.app.version_string, str(path), totals, shapes, nodes)
 
 
 def open_file(path: Path) -> None:
     """An empty scene with the file in it, vertices split as written."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.import_scene.gltf(filepath=str(path), merge_vertices=False, disable_bone_shape=True)
+
+
+def world(item: bpy.types.Object) -> list[float]:
+    """An object's world matrix in glTF's axes, column by column."""
+    turned = TO_GLTF @ item.matrix_world @ TO_GLTF.inverted()
+    return [turned[row][column] for column in range(4) for row in range(4)]
 
 
 def shape(data: bpy.types.Mesh) -> dict[str, Any]:
@@ -51,7 +60,7 @@ def shape(data: bpy.types.Mesh) -> dict[str, Any]:
     facts["area"] = math.fsum(face.calc_area() for face in mesh.faces)
     facts["closed-volume"] = mesh.calc_volume(signed=True)
     facts["proper-boundary-edges"] = sum(edge.is_boundary for edge in mesh.edges)
-    facts["proper-manifold"] = all(edge.is_manifold and edge.is_contiguous for edge in mesh.edges)
+    facts["proper-edge-manifold"] = all(edge.is_manifold and edge.is_contiguous for edge in mesh.edges)
     facts["proper-euler"] = len(mesh.verts) - len(mesh.edges) + len(mesh.faces)
     mesh.free()
     return facts

@@ -25,16 +25,18 @@ COORDINATE = 1e-6
 
 COUNTS = {
     "primitives", "triangles", "vertices", "points", "closed", "manifold", "components", "euler", "genus",
-    "boundary-edges", "boundary-loops", "degenerate-triangles", "meshes", "nodes", "materials", "images",
-    "draw-calls", "bytes", "blake3",
+    "boundary-edges", "boundary-loops", "crowded-edges", "misoriented-edges", "degenerate-triangles", "meshes",
+    "nodes", "materials", "images",
+    "draw-calls", "drawn-triangles", "bytes", "blake3",
 }  # fmt: skip
 REQUIRED_OF_SHAPE = (
     "primitives", "triangles", "vertices", "points", "bounds", "area", "volume", "centroid", "inertia",
     "inertia-of", "closed", "manifold", "components", "euler", "genus", "boundary-edges", "boundary-loops",
-    "degenerate-triangles", "acmr", "atvr", "deviation",
+    "crowded-edges", "misoriented-edges", "degenerate-triangles", "acmr", "atvr", "deviation",
 )  # fmt: skip
 REQUIRED_OF_TOTALS = (
-    "meshes", "primitives", "triangles", "vertices", "materials", "images", "nodes", "draw-calls", "bounds",
+    "meshes", "primitives", "triangles", "vertices", "materials", "images", "nodes", "draw-calls",
+    "drawn-triangles", "bounds",
 )  # fmt: skip
 # Profile `core` must hold these whatever the report says. A normal of unit length in single precision is
 # off by about 1e-7 a component.
@@ -96,6 +98,7 @@ def compare(asset: str, report: Facts, measured: list[Measured]) -> list[Finding
         totals = {**report.get("totals", {}), **report.get("file", {})}
         findings += facts(asset, "totals", totals, one.tool, one.totals)
         findings += shapes(asset, report.get("shapes", {}), one)
+        findings += nodes(asset, report, one)
     findings += deviations(asset, report.get("shapes", {}))
     return findings + list(unmeasured(asset, report, findings))
 
@@ -107,6 +110,15 @@ def shapes(asset: str, claimed: dict[str, Facts], one: Measured) -> Iterator[Fin
         yield Finding(asset, "shapes", one.tool, names, found, differs(names, found), 0.0)
     for name in sorted(set(claimed) & set(one.shapes)):
         yield from facts(asset, f"shapes.{name}", claimed[name], one.tool, one.shapes[name])
+
+
+def nodes(asset: str, report: Facts, one: Measured) -> Iterator[Finding]:
+    """The world matrices of one tool; every node of the report must be found."""
+    reach = max(map(abs, flat(report.get("totals", {}).get("bounds", {}))), default=0.0)
+    for node in report.get("nodes", []) if one.nodes else []:
+        found, name = one.nodes.get(node["name"]), node["name"]
+        allowed = COORDINATE * max(reach, 1.0)
+        yield Finding(asset, f"nodes.{name}", one.tool, node["matrix"], found, differs(node["matrix"], found), allowed)
 
 
 def facts(asset: str, place: str, claims: Facts, tool: str, measured: Facts) -> Iterator[Finding]:
@@ -127,9 +139,12 @@ def claim_for(fact: str, claims: Facts) -> tuple[str, Any] | None:
     """The claim that a tool's fact speaks about, or None where it speaks about none.
 
     `proper-` facts are Blender's, whose import drops triangles without area. `solid-` and `surface-`
-    moments meet only a claim of that kind. `closed-volume` is a signed sum, asked of closed shapes only.
+    moments meet only a claim of that kind. `edge-manifold` is half of what `manifold` claims.
+    `closed-volume` is a signed sum, asked of closed shapes only.
     """
     kind, _, rest = fact.partition("-")
+    if fact == "edge-manifold":
+        return ("manifold", True) if claims.get("manifold") else None
     if kind == "proper":
         return proper(rest, claims)
     if kind in ("solid", "surface") and rest in ("centroid", "inertia"):
@@ -145,7 +160,7 @@ def proper(fact: str, claims: Facts) -> tuple[str, Any] | None:
     degenerate = claims.get("degenerate-triangles", 0)
     if fact == "triangles":
         return fact, claims.get(fact, 0) - degenerate
-    return (fact, claims.get(fact)) if degenerate == 0 else None
+    return claim_for(fact, claims) if degenerate == 0 else None
 
 
 def demand(asset: str, place: str, tool: str, found: Any, measured: Facts) -> Finding:
@@ -169,9 +184,7 @@ def missing(asset: str, report: Facts) -> Iterator[Finding]:
     """A finding for each claim that every report must make."""
     demands = [("totals", REQUIRED_OF_TOTALS, report.get("totals", {}))]
     demands += [("file", ("name", "bytes", "blake3"), report.get("file", {}))]
-    demands += [
-        (f"shapes.{name}", REQUIRED_OF_SHAPE, claims) for name, claims in report.get("shapes", {}).items()
-    ]
+    demands += [(f"shapes.{name}", REQUIRED_OF_SHAPE, claims) for name, claims in report.get("shapes", {}).items()]
     if not report.get("shapes"):
         yield failure(asset, "report", "the report names no shape")
     for place, wanted, claims in demands:

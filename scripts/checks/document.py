@@ -121,17 +121,26 @@ class Document:
         return Primitive(attributes, triangles, primitive.get("material"))
 
     @cached_property
-    def instances(self) -> list[tuple[int, NDArray[np.float64]]]:
-        """(mesh index, world matrix) for each node of the scene that shows a mesh, depth first."""
+    def placed(self) -> list[tuple[dict[str, Any], NDArray[np.float64]]]:
+        """(node, world matrix) for each node of the scene, depth first."""
         scenes = self.json.get("scenes", [{}])
         roots = scenes[self.json.get("scene", 0)].get("nodes", [])
         return [found for root in roots for found in self._below(root, np.eye(4))]
 
-    def _below(self, index: int, parent: NDArray[Any]) -> list[tuple[int, NDArray[np.float64]]]:
+    def _below(self, index: int, parent: NDArray[Any]) -> list[tuple[dict[str, Any], NDArray[np.float64]]]:
         node = self.json["nodes"][index]
         world = parent @ local_matrix(node)
-        own = [(node["mesh"], world)] if "mesh" in node else []
-        return own + [f for child in node.get("children", []) for f in self._below(child, world)]
+        return [(node, world)] + [f for child in node.get("children", []) for f in self._below(child, world)]
+
+    @property
+    def instances(self) -> list[tuple[int, NDArray[np.float64]]]:
+        """(mesh index, world matrix) for each node that shows a mesh."""
+        return [(node["mesh"], world) for node, world in self.placed if "mesh" in node]
+
+    @property
+    def worlds(self) -> dict[str, NDArray[np.float64]]:
+        """World matrices by node name."""
+        return {node["name"]: world for node, world in self.placed if "name" in node}
 
 
 def split(data: bytes) -> tuple[dict[str, Any], bytes]:

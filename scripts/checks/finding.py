@@ -22,7 +22,8 @@ class Measured:
     """What one tool found in one file.
 
     `totals` are facts of the whole file, `shapes` those of each glTF mesh by its name, in the mesh's own
-    coordinates. `error` says why the tool could not measure; then nothing else is set.
+    coordinates, `nodes` world matrices by node name, column by column. `error` says why the tool could not
+    measure; then nothing else is set.
     """
 
     tool: str
@@ -30,6 +31,7 @@ class Measured:
     file: str
     totals: dict[str, Any] = field(default_factory=dict)
     shapes: dict[str, dict[str, Any]] = field(default_factory=dict)
+    nodes: dict[str, list[float]] = field(default_factory=dict)
     error: str | None = None
 
 

@@ -22,7 +22,7 @@ def measure(path: Path) -> finding.Measured:
     opened = pymeshlab.MeshSet()
     opened.load_new_mesh(str(path))
     layers = [opened.mesh(i) for i in range(opened.mesh_number())]
-    totals = {"shown-triangles": sum(layer.face_number() for layer in layers)}
+    totals = {"drawn-triangles": sum(layer.face_number() for layer in layers)}
     shapes = {mesh.name: shape(mesh) for mesh in Document(path).meshes}
     return finding.Measured(TOOL, VERSION, str(path), totals, shapes)
 
@@ -42,11 +42,13 @@ def shape(mesh: Mesh) -> dict[str, Any]:
         "bounds": {"min": box.min().tolist(), "max": box.max().tolist()},
         "area": float(geometry["surface_area"]),
         "boundary-edges": int(topology["boundary_edges"]),
-        "edge-components": int(topology["connected_components_number"]),
+        "components": int(topology["connected_components_number"]),
         "euler": int(topology["vertices_number"] - topology["edges_number"] + topology["faces_number"]),
+        "crowded-edges": int(topology["non_two_manifold_edges"]),
         "self-intersections": layers.current_mesh().selected_face_number(),
     }
     two_manifold = bool(topology["is_mesh_two_manifold"])
+    facts["edge-manifold"] = two_manifold and facts["boundary-edges"] == 0
     if two_manifold:
         facts["boundary-loops"] = int(topology["number_holes"])
     if two_manifold and facts["boundary-edges"] == 0:

@@ -32,9 +32,7 @@ def write(target: Path, findings: dict[str, list[Finding]], pictures: dict[str, 
     sections = [section(asset, found, pictures.get(asset)) for asset, found in findings.items()]
     target.write_text(
         "<!doctype html>\n<html lang=en><meta charset=utf-8><title>Kiln verification</title>"
-        f"<style>{STYLE}</style>\n<h1>Kiln verification</h1>\n<p>{verdict}</p>\n"
-        + "\n".join(sections)
-        + "\n</html>\n",
+        f"<style>{STYLE}</style>\n<h1>Kiln verification</h1>\n<p>{verdict}</p>\n" + "\n".join(sections) + "\n</html>\n",
         encoding="utf-8",
     )
 

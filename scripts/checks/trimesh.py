@@ -27,7 +27,8 @@ def measure(path: Path) -> finding.Measured:
         "triangles": sum(len(mesh.faces) for mesh in scene.geometry.values()),
     }
     shapes = {name: shape(mesh) for name, mesh in scene.geometry.items()}
-    return finding.Measured(TOOL, trimesh.__version__, str(path), totals, shapes)
+    nodes = {name: scene.graph[name][0].T.ravel().tolist() for name in scene.graph.nodes}
+    return finding.Measured(TOOL, trimesh.__version__, str(path), totals, shapes, nodes)
 
 
 def shape(raw: trimesh.Trimesh) -> dict[str, Any]:
@@ -40,11 +41,13 @@ def shape(raw: trimesh.Trimesh) -> dict[str, Any]:
         "points": len(mesh.vertices),
         "bounds": {"min": mesh.bounds[0].tolist(), "max": mesh.bounds[1].tolist()},
         "area": float(mesh.area),
-        "manifold": bool(mesh.is_watertight and mesh.is_winding_consistent),
-        "components": connected(mesh),
+        "edge-manifold": bool(mesh.is_watertight and mesh.is_winding_consistent),
         "euler": int(mesh.euler_number),
         "boundary-edges": len(trimesh.grouping.group_rows(mesh.edges_sorted, require_count=1)),
     }
+    uses = np.unique(mesh.edges_sorted, axis=0, return_counts=True)[1]
+    if uses.max(initial=0) <= 2:  # trimesh joins no faces across edges of more
+        facts["components"] = int(mesh.body_count)
     solid = trimesh.triangles.mass_properties(mesh.triangles)
     facts["closed-volume"] = float(solid["volume"])
     facts["solid-centroid"] = solid["center_mass"].tolist()
@@ -53,12 +56,6 @@ def shape(raw: trimesh.Trimesh) -> dict[str, Any]:
     facts["surface-centroid"] = sheet.tolist()
     facts["surface-inertia"] = surface_inertia(mesh.triangles - sheet, mesh.area_faces).tolist()
     return facts
-
-
-def connected(mesh: trimesh.Trimesh) -> int:
-    """Parts of the surface, where sharing a point connects."""
-    labels = trimesh.graph.connected_component_labels(mesh.edges, node_count=len(mesh.vertices))
-    return len(set(labels.tolist()))
 
 
 def surface_inertia(corners: NDArray[np.float64], areas: NDArray[np.float64]) -> NDArray[np.float64]:

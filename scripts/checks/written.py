@@ -7,11 +7,14 @@ measures in the report's own terms (`closed` counts directed edges; ACMR is a si
 from __future__ import annotations
 
 from collections import deque
+from functools import cached_property
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from blake3 import blake3
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from checks import finding
 from checks.document import Document, Mesh, Primitive
@@ -35,7 +38,8 @@ def measure(path: Path) -> finding.Measured:
     totals["bounds"] = world_bounds(document)
     totals["required-extensions"] = document.json.get("extensionsRequired", [])
     shapes = {mesh.name: shape(mesh) for mesh in document.meshes}
-    return finding.Measured(TOOL, version("numpy"), str(path), totals, shapes)
+    nodes = {name: world.T.ravel().tolist() for name, world in document.worlds.items()}
+    return finding.Measured(TOOL, version("numpy"), str(path), totals, shapes, nodes)
 
 
 def count(document: Document) -> dict[str, Any]:
@@ -47,6 +51,7 @@ def count(document: Document) -> dict[str, Any]:
     totals["triangles"] = sum(len(mesh.triangles) for mesh in meshes)
     totals["vertices"] = sum(len(mesh.positions) for mesh in meshes)
     totals["draw-calls"] = sum(len(meshes[i].primitives) for i, _ in document.instances)
+    totals["drawn-triangles"] = sum(len(meshes[i].triangles) for i, _ in document.instances)
     return totals
 
 
@@ -71,10 +76,12 @@ def shape(mesh: Mesh) -> dict[str, Any]:
         "points": len(points),
         "bounds": {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()},
         "closed": edges.closed,
-        "manifold": edges.manifold,
-        "components": components(len(points), triangles),
+        "manifold": edges.paired and one_fan_each(len(points), triangles, edges),
+        "components": components(triangles, edges),
         "euler": len(points) - edges.distinct + len(triangles),
         "boundary-edges": edges.boundary,
+        "crowded-edges": edges.crowded,
+        "misoriented-edges": edges.misoriented,
         "degenerate-triangles": degenerate(points, triangles),
         "largest-normal-error": max(normal_error(p) for p in mesh.primitives),
         "unused-vertices": sum(unused(p) for p in mesh.primitives),
@@ -85,17 +92,19 @@ def shape(mesh: Mesh) -> dict[str, Any]:
 
 
 class Edges:
-    """Edges between merged points, counted in each direction."""
+    """Edges between merged points, counted in each direction; collapsed ones are left out."""
 
     def __init__(self, triangles: NDArray[np.int64]) -> None:
         directed = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-        directed = directed[directed[:, 0] != directed[:, 1]]
-        forward = directed[:, 0] < directed[:, 1]
-        _, which = np.unique(np.sort(directed, axis=1), axis=0, return_inverse=True)
-        which = which.ravel()
-        self.distinct = int(which.max(initial=-1)) + 1
-        self.up = np.bincount(which[forward], minlength=self.distinct)
-        self.down = np.bincount(which[~forward], minlength=self.distinct)
+        proper = directed[:, 0] != directed[:, 1]
+        self.owner = np.repeat(np.arange(len(triangles)), 3)[proper]
+        self.ends = directed[proper]
+        forward = self.ends[:, 0] < self.ends[:, 1]
+        _, which = np.unique(np.sort(self.ends, axis=1), axis=0, return_inverse=True)
+        self.which = which.ravel()
+        self.distinct = int(self.which.max(initial=-1)) + 1
+        self.up = np.bincount(self.which[forward], minlength=self.distinct)
+        self.down = np.bincount(self.which[~forward], minlength=self.distinct)
 
     @property
     def closed(self) -> bool:
@@ -103,7 +112,7 @@ class Edges:
         return bool((self.up == self.down).all())
 
     @property
-    def manifold(self) -> bool:
+    def paired(self) -> bool:
         """Whether each edge is used exactly once in each direction."""
         return bool(((self.up == 1) & (self.down == 1)).all())
 
@@ -112,14 +121,47 @@ class Edges:
         """Edges that one triangle uses."""
         return int(((self.up + self.down) == 1).sum())
 
+    @property
+    def crowded(self) -> int:
+        """Edges that more than two triangles use."""
+        return int(((self.up + self.down) > 2).sum())
 
-def components(points: int, triangles: NDArray[np.int64]) -> int:
-    """Parts of the surface, where sharing a point connects."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
+    @property
+    def misoriented(self) -> int:
+        """Edges that two triangles use in the same direction."""
+        return int((((self.up + self.down) == 2) & (self.up != self.down)).sum())
 
-    ends = triangles[:, [0, 1, 1, 2]].reshape(-1, 2)
-    graph = coo_array((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(points, points))
+    @cached_property
+    def neighbors(self) -> NDArray[np.int64]:
+        """Pairs of uses of one edge, as rows into `owner` and `ends`."""
+        order = np.argsort(self.which, kind="stable")
+        same = self.which[order[:-1]] == self.which[order[1:]]
+        return np.stack([order[:-1][same], order[1:][same]], axis=1)
+
+
+def components(triangles: NDArray[np.int64], edges: Edges) -> int:
+    """Sets of triangles joined through edges."""
+    return parts(len(triangles), edges.owner[edges.neighbors])
+
+
+def one_fan_each(points: int, triangles: NDArray[np.int64], edges: Edges) -> bool:
+    """Whether the triangles around each point are joined through edges at that point, in one fan."""
+    first, second = edges.neighbors.T
+    pairs = []
+    for end in (0, 1):
+        point = edges.ends[first, end]
+        pairs.append(np.stack([corner(triangles, edges.owner[use], point) for use in (first, second)], axis=1))
+    return parts(triangles.size, np.concatenate(pairs)) == points
+
+
+def corner(triangles: NDArray[np.int64], which: NDArray[np.int64], point: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The number of the corner at which each named triangle has each named point."""
+    return 3 * which + np.argmax(triangles[which] == point[:, None], axis=1)
+
+
+def parts(nodes: int, pairs: NDArray[np.int64]) -> int:
+    """Connected parts of a graph."""
+    graph = coo_array((np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), shape=(nodes, nodes))
     return int(connected_components(graph, directed=False)[0])
 
 

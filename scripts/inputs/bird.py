@@ -104,9 +104,7 @@ def cap(cage: Cage, group: str, ring: int, turned: bool) -> None:
     for quad in ((0, 1, 6, 7), (1, 2, 5, 6), (2, 3, 4, 5)):
         sides = quad[::-1] if turned else quad
         # A small patch of its own in a corner of the picture.
-        uvs = [
-            (0.5 + 0.04 * OCTAGON[s][0], (0.04 if ring == 0 else 0.96) + 0.04 * OCTAGON[s][1]) for s in sides
-        ]
+        uvs = [(0.5 + 0.04 * OCTAGON[s][0], (0.04 if ring == 0 else 0.96) + 0.04 * OCTAGON[s][1]) for s in sides]
         cage.face(group, [index(ring, s) for s in sides], uvs)
 
 
@@ -128,9 +126,7 @@ def wing(cage: Cage, sides: tuple[int, int]) -> None:
     wall(cage, rows, columns, lifted)
 
 
-def patch(
-    cage: Cage, rows: tuple[int, ...], columns: tuple[int, ...], lifted: dict[tuple[int, int], int]
-) -> None:
+def patch(cage: Cage, rows: tuple[int, ...], columns: tuple[int, ...], lifted: dict[tuple[int, int], int]) -> None:
     """The outer side of a wing."""
     for row in rows[:-1]:
         for column in columns[:-1]:
@@ -138,9 +134,7 @@ def patch(
             cage.face("wings", [lifted[c] for c in corners], [uv(*c) for c in corners])
 
 
-def wall(
-    cage: Cage, rows: tuple[int, ...], columns: tuple[int, ...], lifted: dict[tuple[int, int], int]
-) -> None:
+def wall(cage: Cage, rows: tuple[int, ...], columns: tuple[int, ...], lifted: dict[tuple[int, int], int]) -> None:
     """The rim of a wing, from the body to the lifted border."""
     border = [(row, columns[0]) for row in rows]
     border += [(rows[-1], column) for column in columns[1:]]

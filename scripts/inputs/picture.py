@@ -58,9 +58,7 @@ class Picture:
 
         Two builds of zlib may pack the same pixels into different bytes; what is committed stays.
         """
-        rows = b"".join(
-            b"\0" + self.pixels[3 * self.width * y : 3 * self.width * (y + 1)] for y in range(self.height)
-        )
+        rows = b"".join(b"\0" + self.pixels[3 * self.width * y : 3 * self.width * (y + 1)] for y in range(self.height))
         if path.exists() and same_rows(path.read_bytes(), rows):
             return
         header = struct.pack(">IIBBBBB", self.width, self.height, 8, 2, 0, 0, 0)

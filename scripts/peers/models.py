@@ -49,9 +49,7 @@ def path(segments: int = PATH_SEGMENTS) -> list[Triple]:
 def frames() -> list[tuple[Triple, Triple, Triple]]:
     """Normal, binormal and tangent at each point of the path; normals are projected from one to the next."""
     points = path()
-    tangents = [
-        unit(minus(points[min(i + 1, PATH_SEGMENTS)], points[max(i - 1, 0)])) for i in range(len(points))
-    ]
+    tangents = [unit(minus(points[min(i + 1, PATH_SEGMENTS)], points[max(i - 1, 0)])) for i in range(len(points))]
     normal = unit(cross(tangents[0], (0.0, 0.0, 1.0)))
     found = []
     for tangent in tangents:
@@ -75,9 +73,7 @@ def vase_optimum(tolerance: float) -> float:
             t = (k + 0.5) / steps
             s = 1.0 - t
             r = bezier(control, t)[0]
-            dr, dz = (
-                s * s * velocity[0][i] + 2 * s * t * velocity[1][i] + t * t * velocity[2][i] for i in (0, 1)
-            )
+            dr, dz = (s * s * velocity[0][i] + 2 * s * t * velocity[1][i] + t * t * velocity[2][i] for i in (0, 1))
             ddr, ddz = (s * bend[0][i] + t * bend[1][i] for i in (0, 1))
             turning = abs(dz) * abs(dr * ddz - dz * ddr)
             total += 2 * math.pi * math.sqrt(r * turning) / math.hypot(dr, dz) / steps

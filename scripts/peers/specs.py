@@ -60,10 +60,9 @@ def kiln_profile() -> str:
 
 
 def kiln_vase(along: int, around: int) -> str:
-    """The vase on a fixed grid."""
+    """The vase on a fixed grid; of a turned surface u goes around and v along the profile."""
     return (
-        f"{kiln_profile()}[shape.vase]\nsegments = [{along}, {around}]\n\n"
-        '[shape.vase.revolve]\nprofile = "outline"\n'
+        f'{kiln_profile()}[shape.vase]\nsegments = [{around}, {along}]\n\n[shape.vase.revolve]\nprofile = "outline"\n'
     )
 
 

@@ -58,9 +58,7 @@ def cases() -> Path:
 def program() -> Path:
     """The built program; a missing one is a failure, never a skip."""
     named = os.environ.get("KILN_BIN")
-    candidates = (
-        [Path(named)] if named else [ROOT / "target" / kind / "kiln" for kind in ("release", "debug")]
-    )
+    candidates = [Path(named)] if named else [ROOT / "target" / kind / "kiln" for kind in ("release", "debug")]
     found = next((path for path in candidates if path.is_file()), None)
     if found is None:
         pytest.fail(f"kiln is not built: looked for {', '.join(map(str, candidates))}")

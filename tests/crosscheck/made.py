@@ -27,6 +27,8 @@ SIZE = np.array([2.0, 1.0, 0.5])
 CENTER = np.array([0.25, 0.5, -0.125])
 RING, TUBE, AROUND, ACROSS = 1.0, 0.25, 24, 12
 TURN = [0.0, 0.0, 0.6, 0.8]  # a quaternion about z with cos = 0.28 and sin = 0.96
+TURNED = np.array([[0.28, -0.96, 0.0], [0.96, 0.28, 0.0], [0.0, 0.0, 1.0]])
+BEHIND = [0.0, 0.0, -2.0]
 RAISED = [0.0, 0.0, 3.0]
 
 
@@ -96,7 +98,7 @@ def glb(meshes: dict[str, Vertices]) -> bytes:
         "scenes": [{"nodes": [0, 1]}],
         "nodes": [
             {"name": "low", "mesh": 0, "rotation": TURN, "children": [2]},
-            {"name": "ring", "mesh": 1, "translation": [0.0, 0.0, -2.0]},
+            {"name": "ring", "mesh": 1, "translation": BEHIND},
             {"name": "high", "mesh": 0, "translation": RAISED},
         ],
         "meshes": described,
@@ -131,18 +133,30 @@ def claims(path: Path) -> dict[str, Any]:
             "images": 0,
             "nodes": 3,
             "draw-calls": 3,
+            "drawn-triangles": 2 * shapes["crate"]["triangles"] + shapes["ring"]["triangles"],
             "bounds": world_box(),
         },
         "shapes": shapes,
+        "nodes": [
+            {"name": "low", "parent": None, "mesh": "crate", "matrix": column_by_column(TURNED, [0.0, 0.0, 0.0])},
+            {"name": "ring", "parent": None, "mesh": "ring", "matrix": column_by_column(np.eye(3), BEHIND)},
+            {"name": "high", "parent": "low", "mesh": "crate", "matrix": column_by_column(TURNED, RAISED)},
+        ],
     }
+
+
+def column_by_column(turn: NDArray[np.float64], place: list[float]) -> list[float]:
+    """A matrix as the report writes it."""
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = turn, place
+    return matrix.T.ravel().tolist()
 
 
 def world_box() -> dict[str, list[float]]:
     """The box of both crates and the ring."""
-    turn = np.array([[0.28, -0.96, 0.0], [0.96, 0.28, 0.0], [0.0, 0.0, 1.0]])
     corners = np.array(list(product(*zip(CENTER - SIZE / 2, CENTER + SIZE / 2, strict=True))))
-    low_crate = corners @ turn.T
-    points = np.concatenate([low_crate, low_crate + RAISED, ring()[0] + [0.0, 0.0, -2.0]])
+    low_crate = corners @ TURNED.T
+    points = np.concatenate([low_crate, low_crate + RAISED, ring()[0] + BEHIND])
     return {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
 
 
@@ -196,6 +210,8 @@ def common(arrays: Vertices, points: int, euler: int, genus: int) -> dict[str, A
         "genus": genus,
         "boundary-edges": 0,
         "boundary-loops": 0,
+        "crowded-edges": 0,
+        "misoriented-edges": 0,
         "degenerate-triangles": 0,
         "deviation": {"tolerance": 0.01, "bound": 0.005, "kind": "proved", "measured": 0.004},
     }

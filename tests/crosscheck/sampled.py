@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -58,7 +59,7 @@ def bezier(control: list[list[float]], t: Points) -> Points:
     """Points of one Bezier of any degree, by de Casteljau's construction."""
     layer = [np.outer(np.ones_like(t), point) for point in np.array(control, float)]
     while len(layer) > 1:
-        layer = [(1 - t)[:, None] * a + t[:, None] * b for a, b in zip(layer, layer[1:], strict=False)]
+        layer = [(1 - t)[:, None] * a + t[:, None] * b for a, b in pairwise(layer)]
     return layer[0]
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+
 from sampled import area, bezier, exponent, revolved, spread, to_polyline, to_profile, volume
 
 if TYPE_CHECKING:
@@ -161,9 +162,7 @@ def test_uneven_profile_takes_fewer_triangles_than_a_grid(kiln: Kiln) -> None:
     own = asset.shape("s")["triangles"]
     for across in range(8, 200, 2):
         grid = kiln.bake(
-            POT.replace(
-                "[shape.s.revolve]", f"[shape.s]\nsegments = [{across}, {2 * across}]\n[shape.s.revolve]"
-            )
+            POT.replace("[shape.s.revolve]", f"[shape.s]\nsegments = [{2 * across}, {across}]\n[shape.s.revolve]")
         )
         if pot(spread(*grid.mesh("s"), steps=4)).max() <= worst:
             assert own < grid.shape("s")["triangles"]

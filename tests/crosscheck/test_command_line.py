@@ -1,0 +1,225 @@
+"""The program from outside: exit codes, refusals, and that hostile input leaves nothing behind."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import json
+import shutil
+from typing import TYPE_CHECKING
+
+import pytest
+
+from inputs.picture import Picture
+
+if TYPE_CHECKING:
+    import subprocess
+    from pathlib import Path
+
+    from kiln import Kiln
+
+BOX = "[shape.s.box]\nsize = [1, 1, 1]\n"
+
+
+def written(kiln: Kiln) -> list[str]:
+    """What stands in the output folder."""
+    out = kiln.folder / "out"
+    return sorted(str(path.relative_to(out)) for path in out.rglob("*") if path.is_file()) if out.exists() else []
+
+
+def assert_refused(kiln: Kiln, done: subprocess.CompletedProcess[str], *words: str) -> None:
+    """An error of the spec or a file, said plainly, and nothing written."""
+    said = done.stdout + done.stderr
+    assert done.returncode in (1, 3), said
+    for word in words:
+        assert word in said, said
+    assert "panicked" not in said
+    assert "RUST_BACKTRACE" not in said
+    assert written(kiln) == []
+
+
+def test_exit_codes(kiln: Kiln) -> None:
+    kiln.write(BOX)
+    assert kiln.run("bake", "model.toml").returncode == 0
+    assert kiln.run("check", "model.toml").returncode == 0
+    kiln.write("[shape.s.box]\nsizes = [1, 1, 1]\n", "wrong")
+    assert kiln.run("check", "wrong.toml").returncode == 1
+    assert kiln.run("bake", "--no-such-flag").returncode == 2
+    assert kiln.run("bake").returncode == 2
+    assert kiln.run("bake", "none.toml").returncode == 3
+
+
+def test_bake_writes_the_asset_and_its_report(kiln: Kiln) -> None:
+    kiln.bake(BOX)
+    assert written(kiln) == ["model.glb", "model.report.json"]
+
+
+def test_no_report_writes_only_the_asset(kiln: Kiln) -> None:
+    kiln.write(BOX)
+    assert kiln.run("bake", "model.toml", "--out", "out", "--no-report").returncode == 0
+    assert written(kiln) == ["model.glb"]
+
+
+def test_folders_are_kept_below_the_output(kiln: Kiln) -> None:
+    (kiln.folder / "specs" / "deep").mkdir(parents=True)
+    kiln.write(BOX, "specs/deep/inner")
+    kiln.write(BOX, "specs/outer")
+    assert kiln.run("bake", "specs", "--out", "out", "--no-report").returncode == 0
+    assert written(kiln) == ["deep/inner.glb", "outer.glb"]
+
+
+def test_variants_bake_one_more_asset_each(kiln: Kiln) -> None:
+    spec = "[parameters]\nh = 1.0\n[shape.s.box]\nsize = [1, '= h', 1]\n[variant.tall.parameters]\nh = 3.0\n"
+    kiln.bake(spec)
+    assert "model.tall.glb" in written(kiln)
+    assert kiln.baked("model.tall").shape("s")["volume"] == pytest.approx(3)
+
+
+def test_set_overrides_a_parameter(kiln: Kiln) -> None:
+    spec = "[parameters]\nh = 1.0\n[shape.s.box]\nsize = [1, '= 2 * h', 1]\n"
+    assert kiln.bake(spec, "--set", "h=0.3").shape("s")["volume"] == pytest.approx(0.6)
+
+
+def test_all_errors_of_a_document_come_in_one_run(kiln: Kiln) -> None:
+    kiln.write("[shape.a.box]\nsizes = [1, 1, 1]\n[shape.b.sphere]\nradius = -1\n[shape.c.revolve]\nprofile = 'p'\n")
+    done = kiln.run("bake", "model.toml", "--out", "out")
+    assert_refused(kiln, done, "sizes", "size", "radius", "profile", "model.toml:2:", "model.toml:4:")
+
+
+def test_format_json_is_json(kiln: Kiln) -> None:
+    kiln.write("[shape.a.box]\nsizes = [1, 1, 1]\n")
+    done = kiln.run("check", "model.toml", "--format", "json")
+    assert done.returncode == 1
+    found = [json.loads(line) for line in done.stdout.splitlines() if line.strip()]
+    assert "model.toml" in json.dumps(found)
+
+
+def test_failed_assert_stops_the_asset(kiln: Kiln) -> None:
+    kiln.write(f'{BOX}[assert]\n"shapes.s.triangles" = {{ at-most = 11 }}\n')
+    assert_refused(kiln, kiln.run("bake", "model.toml", "--out", "out"), "model.toml:4:", "12")
+
+
+def test_a_model_beyond_all_limits_is_refused_before_memory_is_taken(kiln: Kiln) -> None:
+    kiln.write("tolerance = 1e-12\n[shape.s.sphere]\nradius = 1\n")
+    assert_refused(kiln, kiln.run("bake", "model.toml", "--out", "out", seconds=20), "model.toml")
+
+
+def test_output_folder_that_is_a_file(kiln: Kiln) -> None:
+    kiln.write(BOX)
+    (kiln.folder / "taken").write_text("here")
+    done = kiln.run("bake", "model.toml", "--out", "taken")
+    assert done.returncode == 3
+    assert "taken" in done.stdout + done.stderr
+    assert (kiln.folder / "taken").read_text() == "here"
+
+
+def test_file_outside_the_project_is_refused(kiln: Kiln) -> None:
+    kiln.write('[shape.s.import]\nfile = "../outside.obj"\n')
+    assert_refused(kiln, kiln.run("bake", "model.toml", "--out", "out"), "../outside.obj")
+
+
+def test_new_makes_a_spec_that_bakes(kiln: Kiln) -> None:
+    assert kiln.run("new", "cup").returncode == 0
+    (made,) = kiln.folder.rglob("*.toml")
+    done = kiln.run("bake", str(made.relative_to(kiln.folder)), "--out", "out")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_explain_knows_every_code_that_check_says(kiln: Kiln) -> None:
+    kiln.write("[shape.a.box]\nsizes = [1, 1, 1]\n")
+    said = kiln.run("check", "model.toml").stderr
+    code = said.partition("[")[2].partition("]")[0]
+    done = kiln.run("explain", code)
+    assert done.returncode == 0, code
+    assert len(done.stdout) > 80
+
+
+def test_inspect_describes_a_file(kiln: Kiln) -> None:
+    kiln.bake(BOX)
+    done = kiln.run("inspect", "out/model.glb")
+    assert done.returncode == 0
+    assert "12" in done.stdout
+
+
+def test_schema_is_a_schema(kiln: Kiln) -> None:
+    from jsonschema import Draft202012Validator
+
+    Draft202012Validator.check_schema(json.loads(kiln.run("schema").stdout))
+
+
+# Hostile files that are right, as far as Kiln reads them: what must come of them.
+LOADABLE = {"utf8_bom.obj": 2, "binary_named_solid.stl": 1, "path_traversal.obj": 1}
+
+
+@pytest.mark.cases
+def test_hostile_models(kiln: Kiln, cases: Path) -> None:
+    files = [*(cases / "hostile" / "obj").iterdir(), *(cases / "hostile" / "stl").iterdir()]
+    assert len(files) == 12
+    for file in sorted(files):
+        shutil.copy(file, kiln.folder / file.name)
+        kiln.write(f'[shape.s.import]\nfile = "{file.name}"\n')
+        done = kiln.run("bake", "model.toml", "--out", "out", seconds=20)
+        if file.name in LOADABLE:
+            assert done.returncode == 0, f"{file.name}: {done.stdout}{done.stderr}"
+            assert kiln.baked().shape("s")["triangles"] == LOADABLE[file.name]
+            shutil.rmtree(kiln.folder / "out")
+        else:
+            assert_refused(kiln, done, file.name)
+
+
+@pytest.mark.cases
+def test_foreign_formats_are_refused_with_what_to_do(kiln: Kiln, cases: Path) -> None:
+    files = [*(cases / "hostile" / "gltf").iterdir(), *(cases / "hostile" / "md2").iterdir()]
+    assert len(files) == 8
+    for file in sorted(files):
+        shutil.copy(file, kiln.folder / file.name)
+        kiln.write(f'[shape.s.import]\nfile = "{file.name}"\n')
+        assert_refused(kiln, kiln.run("bake", "model.toml", "--out", "out", seconds=20), file.name)
+    (kiln.folder / "scene.blend").write_bytes(b"BLENDER-v405" + bytes(64))
+    kiln.write('[shape.s.import]\nfile = "scene.blend"\n')
+    assert_refused(kiln, kiln.run("bake", "model.toml", "--out", "out"), "scene.blend", "Export")
+
+
+@pytest.mark.cases
+def test_hostile_pictures(kiln: Kiln, cases: Path) -> None:
+    files = sorted((cases / "hostile" / "png").iterdir())
+    assert len(files) == 6
+    for file in files:
+        shutil.copy(file, kiln.folder / file.name)
+        kiln.write(
+            f'[shape.s]\nmaterial = "m"\n[shape.s.box]\nsize = [1, 1, 1]\n[material.m]\ncolor-texture = "{file.name}"\n'
+        )
+        assert_refused(kiln, kiln.run("bake", "model.toml", "--out", "out", seconds=20), file.name)
+
+
+def test_picture_that_is_right_is_embedded(kiln: Kiln) -> None:
+    Picture(2, 2, (1, 2, 3)).write(kiln.folder / "t.png")
+    spec = '[shape.s]\nmaterial = "m"\n[shape.s.box]\nsize = [1, 1, 1]\n[material.m]\ncolor-texture = "t.png"\n'
+    assert kiln.bake(spec).report["totals"]["images"] == 1
+
+
+@pytest.mark.cases
+def test_hostile_documents(kiln: Kiln, cases: Path) -> None:
+    files = sorted((cases / "hostile" / "toml").iterdir())
+    assert len(files) == 3
+    for file in files:
+        shutil.copy(file, kiln.folder / file.name)
+        assert_refused(kiln, kiln.run("bake", file.name, "--out", "out", seconds=20), file.name)
+        (kiln.folder / file.name).unlink()
+
+
+@pytest.mark.cases
+def test_every_invalid_document_of_the_toml_corpus_is_refused(kiln: Kiln, cases: Path) -> None:
+    text = gzip.decompress((cases / "toml" / "toml_test_1.0.json.gz").read_bytes())
+    corpus = {name: entry for name, entry in json.loads(text)["files"].items() if name.startswith("invalid/")}
+    names = []
+    for number, (name, entry) in enumerate(sorted(corpus.items())):
+        if name.endswith(".toml"):
+            names.append(f"i{number:04}.toml")
+            (kiln.folder / names[-1]).write_bytes(base64.b64decode(entry["b64"]))
+    assert len(names) > 240
+    done = kiln.run("check", *names)
+    said = done.stdout + done.stderr
+    assert done.returncode in (1, 3)
+    assert "panicked" not in said
+    assert [name for name in names if name not in said] == []
