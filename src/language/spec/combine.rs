@@ -1,7 +1,7 @@
 //! Shapes made from other shapes: copies, mirror images, arrays, groups.
 
 use glam::DVec3;
-use serde_json::{Value as Json, json};
+use serde_json::Value as Json;
 
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
@@ -11,7 +11,7 @@ use crate::language::spec::kind::choice;
 use crate::language::spec::point::Count;
 use crate::language::spec::reader::{Read, Reader};
 use crate::language::spec::reference::ShapeReference;
-use crate::language::spec::schema::Schemas;
+use crate::language::spec::schema::{Schemas, any_of, one_of_words};
 use crate::language::spec::spanned::Sp;
 use crate::language::value::{Data, Value};
 
@@ -134,7 +134,8 @@ impl Read for Plane {
     }
 
     fn schema(schemas: &mut Schemas) -> Json {
-        let words = json!({ "anyOf": [{ "enum": ["x", "y", "z"] }, { "pattern": "^= " }] });
-        json!({ "if": { "type": "object" }, "then": PlaneFields::schema(schemas), "else": words })
+        let mut alternatives = one_of_words(&["x", "y", "z"]);
+        alternatives.push(PlaneFields::schema(schemas));
+        any_of(alternatives)
     }
 }

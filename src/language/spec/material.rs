@@ -9,7 +9,7 @@ use crate::language::spec::construct::{choices, table};
 use crate::language::spec::import::FilePath;
 use crate::language::spec::point::read_numbers;
 use crate::language::spec::reader::{Read, Reader, backtick};
-use crate::language::spec::schema::{Schemas, numbers};
+use crate::language::spec::schema::{Schemas, any_of, numbers};
 use crate::language::spec::spanned::Sp;
 use crate::language::value::{Data, Value, show_number};
 
@@ -147,8 +147,7 @@ impl Read for Texture {
     }
 
     fn schema(schemas: &mut Schemas) -> Json {
-        let table = TextureFields::schema(schemas);
-        json!({ "if": { "type": "object" }, "then": table, "else": { "type": "string" } })
+        any_of(vec![json!({ "type": "string" }), TextureFields::schema(schemas)])
     }
 }
 

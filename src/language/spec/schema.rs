@@ -5,6 +5,9 @@ use serde_json::{Map, Value as Json, json};
 use crate::language::spec::check::Check;
 use crate::language::spec::reader::Read;
 
+/// Under this key stands the order of the properties, which a JSON map does not keep, for the reference page.
+pub const ORDER: &str = "x-order";
+
 /// What an expression looks like.
 const EXPRESSION: &str = "^= ";
 
@@ -20,6 +23,7 @@ pub struct Object {
     properties: Map<String, Json>,
     required: Vec<String>,
     kinds: Vec<String>,
+    order: Vec<String>,
     fields: usize,
 }
 
@@ -63,6 +67,7 @@ impl Object {
             None => {}
         }
         self.fields += 1;
+        self.order.push(name.clone());
         self.properties.insert(name, schema);
     }
 
@@ -71,12 +76,7 @@ impl Object {
         let mut schema = T::schema(schemas);
         describe(&mut schema, doc);
         self.kinds.push(name.to_owned());
-        self.properties.insert(name.to_owned(), schema);
-    }
-
-    /// Adds a property as it is.
-    pub fn property(&mut self, name: &str, schema: Json) {
-        self.fields += 1;
+        self.order.push(name.to_owned());
         self.properties.insert(name.to_owned(), schema);
     }
 
@@ -87,6 +87,7 @@ impl Object {
             "type": "object",
             "properties": self.properties,
             "additionalProperties": false,
+            ORDER: self.order,
         });
         if !self.required.is_empty() {
             schema["required"] = json!(self.required);
@@ -143,7 +144,19 @@ pub fn numbers(least: usize, most: usize) -> Json {
 pub fn words(choices: &[(&str, &str)]) -> Json {
     let names: Vec<_> = choices.iter().map(|(name, _)| *name).collect();
     let meanings: Vec<_> = choices.iter().map(|(name, doc)| format!("- `{name}`: {}", tidy(doc))).collect();
-    json!({ "type": "string", "anyOf": [{ "enum": names }, { "pattern": EXPRESSION }], "choices": meanings })
+    let mut schema = any_of(one_of_words(&names));
+    schema["choices"] = json!(meanings);
+    schema
+}
+
+/// The alternatives of a choice among words: the words, or an expression.
+pub fn one_of_words(words: &[&str]) -> Vec<Json> {
+    vec![json!({ "type": "string", "enum": words }), json!({ "type": "string", "pattern": EXPRESSION })]
+}
+
+/// One of several schemas that differ in type.
+pub fn any_of(schemas: Vec<Json>) -> Json {
+    json!({ "anyOf": schemas })
 }
 
 fn describe(schema: &mut Json, doc: &str) {

@@ -9,7 +9,7 @@ use crate::language::spec::construct::table;
 use crate::language::spec::kind::choice;
 use crate::language::spec::point::Point;
 use crate::language::spec::reader::{Read, Reader};
-use crate::language::spec::schema::Schemas;
+use crate::language::spec::schema::{Schemas, any_of, one_of_words};
 use crate::language::spec::spanned::Sp;
 use crate::language::value::{Data, Value, show_number};
 
@@ -65,10 +65,9 @@ impl Read for Parameters {
     }
 
     fn schema(schemas: &mut Schemas) -> Json {
-        let numbers = Vec::<f64>::schema(schemas);
-        let words =
-            json!({ "anyOf": [{ "enum": ["uniform", "chordal", "centripetal"] }, { "pattern": "^= " }] });
-        json!({ "if": { "type": "string" }, "then": words, "else": numbers })
+        let mut alternatives = one_of_words(&["uniform", "chordal", "centripetal"]);
+        alternatives.push(Vec::<f64>::schema(schemas));
+        any_of(alternatives)
     }
 
     fn written(&self) -> Option<Json> {
