@@ -15,7 +15,7 @@ use crate::language::value::{Data, Value, show_number};
 
 table! {
     /// How a surface looks.
-    "material" Material {
+    "material" pub Material {
         /// Its color: `"#rrggbb"` or `"#rrggbbaa"` as on screen (sRGB), or linear `[r, g, b]` or `[r, g, b, a]`.
         color: Sp<Color> = Color::WHITE;
         /// 0 is a plastic, a stone, a wood; 1 a metal.
@@ -73,7 +73,7 @@ pub struct Texture {
 
 table! {
     /// An image on a surface.
-    "texture" TextureFields {
+    "texture" pub(crate) TextureFields {
         /// The image, PNG or JPEG; the path is relative to this document.
         file: Sp<FilePath>;
         /// What lies beyond its borders.

@@ -42,15 +42,15 @@ impl Family {
 
 /// A name where one definition uses another.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Use {
+pub(crate) struct Use {
     /// The family in which the name is looked up.
-    pub family: Family,
+    pub(crate) family: Family,
     /// The name.
-    pub name: String,
+    pub(crate) name: String,
     /// Where it is written.
-    pub span: Span,
+    pub(crate) span: Span,
     /// The definition that uses it.
-    pub user: Option<(Family, String)>,
+    pub(crate) user: Option<(Family, String)>,
 }
 
 /// The curve that a field asks for.

@@ -15,7 +15,7 @@ use crate::language::value::{Data, Value, show_number};
 
 table! {
     /// A smooth curve through points: a cubic spline whose curvature is zero at both ends, or periodic when closed.
-    "natural-spline" NaturalSpline {
+    "natural-spline" pub NaturalSpline {
         /// The points that it goes through, in order.
         points: Vec<Sp<Point>> => Check::items(2);
         /// Whether it runs back to the first point, smooth there too.
@@ -43,7 +43,7 @@ pub enum Parameters {
 
 table! {
     /// Bezier curves joined end to end: each begins at the last point of the one before.
-    "bezier" Bezier {
+    "bezier" pub Bezier {
         /// End points and the control points between them, in one list: `degree` times the number of pieces, plus 1.
         points: Sp<Vec<Sp<Point>>> => Check::items(2);
         /// Degree of each piece: 3 is cubic.
