@@ -95,8 +95,8 @@ fn run(case: &Case) -> Vec<String> {
         case.files.iter().fold(MemoryFiles::new(), |files, (path, text)| files.with(path, unescape(text)));
     let found = diagnostics(case, &files);
     // Whatever is found can be shown.
-    assert_eq!(found.render(true).is_empty(), false);
-    found.to_json();
+    assert_eq!(found.render(true).is_empty(), found.is_empty());
+    assert_eq!(found.to_json().as_array().map(Vec::len), Some(found.len()));
     let lines: Vec<String> = found.iter().flat_map(|one| describe(one, &found)).collect();
     if lines.is_empty() { vec!["ok".to_owned()] } else { lines }
 }

@@ -8,6 +8,7 @@ use kiln::language::value::{Data, Table, Value, parse};
 use serde_json::Value as Json;
 
 /// The folder of real data; `None`, said aloud, where there is none.
+#[expect(clippy::print_stdout, reason = "a run without the real data says so")]
 fn cases(count: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("KILN_CASES").map(PathBuf::from);
     if folder.is_none() {

@@ -3,13 +3,19 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use annotate_snippets::{AnnotationKind, Group, Level, Patch, Renderer, Snippet};
+use annotate_snippets::{AnnotationKind, Group, Level, Origin, Patch, Renderer, Snippet};
 
 use crate::language::diagnostic::{Diagnostic, Label, Severity, Suggestion};
 use crate::language::source::{FileId, SourceMap, Span};
 
 /// The most diagnostics that are shown.
 const MOST: usize = 100;
+
+/// Lines longer than this are cut around the place, in bytes.
+const WIDEST: usize = 2000;
+
+/// How much of a cut line is shown before the place and, twice as much, after it, in bytes.
+const MARGIN: usize = 60;
 
 /// All diagnostics, one after the other.
 pub(crate) fn all(list: &[Diagnostic], sources: &SourceMap, color: bool) -> String {
@@ -23,7 +29,9 @@ pub(crate) fn all(list: &[Diagnostic], sources: &SourceMap, color: bool) -> Stri
         text.push_str(&format!("and {} more\n", list.len() - MOST));
     }
     text.truncate(text.trim_end().len());
-    text.push('\n');
+    if !text.is_empty() {
+        text.push('\n');
+    }
     text
 }
 
@@ -35,7 +43,7 @@ fn one(diagnostic: &Diagnostic, sources: &SourceMap, renderer: &Renderer) -> Str
     let title = level.primary_title(neutral(&diagnostic.message)).id(diagnostic.code.text());
     let mut main = Group::with_title(title);
     for (file, labels) in by_file(diagnostic, sources) {
-        main = main.element(snippet(file, &labels, sources));
+        main = snippet(main, file, &labels, sources);
     }
     for note in &diagnostic.notes {
         main = main.element(Level::NOTE.message(neutral(note)));
@@ -62,30 +70,41 @@ fn by_file<'d>(diagnostic: &'d Diagnostic, sources: &SourceMap) -> Vec<(FileId, 
     files
 }
 
-fn snippet<'s>(
-    file: FileId,
-    labels: &[&Label],
-    sources: &'s SourceMap,
-) -> Snippet<'s, annotate_snippets::Annotation<'s>> {
-    let window = Window::around(file, labels.iter().map(|label| label.span), sources);
-    let annotations = labels.iter().map(|label| {
+/// The labels of one file under their lines.
+fn snippet<'s>(mut main: Group<'s>, file: FileId, labels: &[&Label], sources: &'s SourceMap) -> Group<'s> {
+    let mut window = Window::around(file, labels.iter().map(|label| label.span), sources);
+    let mut shown = labels;
+    if window.is_wide() {
+        // The first label is the most important one.
+        shown = &labels[..1];
+        window = Window::narrow(file, labels[0].span, sources);
+    }
+    let annotations = shown.iter().map(|label| {
         let kind = if label.primary { AnnotationKind::Primary } else { AnnotationKind::Context };
         kind.span(window.range(label.span, sources)).label(neutral(&label.text).into_owned())
     });
     let annotations: Vec<_> = annotations.collect();
-    Snippet::source(window.text)
-        .line_start(window.line)
-        .path(neutral(sources.path(file)).into_owned())
-        .annotations(annotations)
+    let path = neutral(sources.path(file)).into_owned();
+    let mut snippet = Snippet::source(window.text).line_start(window.line).annotations(annotations);
+    match sources.locate(labels[0].span).filter(|_| window.cut) {
+        // The renderer would count the column from the cut.
+        Some(place) => main = main.element(Origin::path(path).line(place.line).char_column(place.column)),
+        None => snippet = snippet.path(path),
+    }
+    main.element(snippet)
 }
 
 fn patch<'s>(suggestion: &'s Suggestion, sources: &'s SourceMap) -> Option<Group<'s>> {
+    let title = Level::HELP.secondary_title(neutral(&suggestion.text));
     let file = sources.file_of(suggestion.span)?;
     let window = Window::around(file, std::iter::once(suggestion.span), sources);
+    if window.is_wide() {
+        return Some(Group::with_title(title));
+    }
     let range = window.range(suggestion.span, sources);
     let patch = Patch::new(range, neutral(&suggestion.replacement));
     let snippet = Snippet::source(window.text).line_start(window.line).patch(patch);
-    Some(Group::with_title(Level::HELP.secondary_title(neutral(&suggestion.text))).element(snippet))
+    Some(Group::with_title(title).element(snippet))
 }
 
 /// The lines around some spans: only these are given to the renderer, whose cost grows with the text.
@@ -93,6 +112,7 @@ struct Window {
     text: String,
     start: usize,
     line: usize,
+    cut: bool,
 }
 
 impl Window {
@@ -104,8 +124,35 @@ impl Window {
         let last = ranges.iter().map(|range| range.end).max().unwrap_or(0);
         let start = whole[..first].rfind('\n').map_or(0, |at| at + 1);
         let end = whole[last..].find('\n').map_or(whole.len(), |at| last + at);
-        let line = whole[..start].bytes().filter(|byte| *byte == b'\n').count() + 1;
-        Self { text: same_length(&whole[start..end]), start, line }
+        Self::new(whole, start..end, false)
+    }
+
+    fn new(whole: &str, range: Range<usize>, cut: bool) -> Self {
+        let (start, line) =
+            (range.start, whole[..range.start].bytes().filter(|byte| *byte == b'\n').count() + 1);
+        Self { text: same_length(&whole[range]), start, line, cut }
+    }
+
+    /// Whether a line is too long to be shown: one line may be the whole of a large file.
+    fn is_wide(&self) -> bool {
+        self.text.len() > WIDEST && self.text.lines().any(|line| line.len() > WIDEST)
+    }
+
+    /// The part of a line around the start of a span.
+    fn narrow(file: FileId, span: Span, sources: &SourceMap) -> Self {
+        let whole = sources.text(file);
+        let (line, place) = (Self::around(file, std::iter::once(span), sources), sources.range(span));
+        let place = place.map_or(0, |(_, range)| range.start);
+        let mut start = line.start.max(place.saturating_sub(MARGIN));
+        let line_end = whole[place..].find('\n').map_or(whole.len(), |at| place + at);
+        let mut end = line_end.min(place + 2 * MARGIN);
+        while !whole.is_char_boundary(start) {
+            start += 1;
+        }
+        while !whole.is_char_boundary(end) {
+            end -= 1;
+        }
+        Self::new(whole, start..end, true)
     }
 
     /// A span within the window, never beyond its end: the renderer panics on such.
@@ -194,6 +241,7 @@ help: did you mean `segments`?
         assert!(rendered("", 0, 0).contains("case.toml:1:1"));
         let long = rendered(&"x = 1, ".repeat(200_000), 700_001, 700_002);
         assert!(long.len() < 4000, "{}", long.len());
+        assert!(long.contains("case.toml:1:700002"), "{long}");
         let mut sources = SourceMap::new();
         sources.add("a", "text").unwrap();
         let one = Diagnostic::error(Code::Syntax, "nowhere").at(Span::new(900, 901), "label");

@@ -170,10 +170,9 @@ impl Loader<'_> {
             base.entries.insert(family.to_owned(), entry);
             return;
         };
-        match (&mut under.value.data, entry.value.data) {
-            (Data::Table(under), Data::Table(added)) => self.merge_names(family, under, added),
-            // What is no table is reported where families are read; the one of the main document wins.
-            _ => {}
+        // What is no table is reported where families are read; the one of the main document wins.
+        if let (Data::Table(under), Data::Table(added)) = (&mut under.value.data, entry.value.data) {
+            self.merge_names(family, under, added);
         }
     }
 

@@ -26,7 +26,7 @@ pub enum Computed {
     /// Text.
     Text(String),
     /// A point or another list.
-    List(Vec<Computed>),
+    List(Vec<Self>),
 }
 
 impl Computed {

@@ -113,9 +113,6 @@ impl Binary {
 const UNARY: u8 = 6;
 const COMPARISON: u8 = 3;
 
-/// Words that are operators or values.
-pub(crate) const WORDS: [&str; 6] = ["and", "or", "not", "true", "false", "pi"];
-
 /// Parses the text of an expression, without its `= `.
 ///
 /// # Errors

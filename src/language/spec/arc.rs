@@ -39,7 +39,7 @@ const ANGLE: f64 = 3600.0;
 
 table! {
     /// A part of a circle: either `center`, `radius`, `from` and `to`, or `points`.
-    "arc" ArcFields {
+    "arc" pub(crate) ArcFields {
         /// The center; `[0, 0]` when it is not written.
         center: Option<Sp<Point>>;
         /// Radius, in the document's unit.
@@ -73,7 +73,7 @@ impl ArcFields {
         let others = [("radius", &self.radius), ("from", &self.from), ("to", &self.to)];
         let others =
             others.iter().filter_map(|(name, field)| field.as_ref().map(|field| (*name, field.span)));
-        for (name, span) in center.into_iter().chain(others) {
+        if let Some((name, span)) = center.into_iter().chain(others).next() {
             let message = format!("an arc through points has no `{name}`");
             let report = Diagnostic::error(Code::Conflict, message)
                 .at(span, "cannot stand beside `points`")

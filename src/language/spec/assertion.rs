@@ -54,7 +54,7 @@ pub enum Expected {
 
 table! {
     /// Bounds on a number of the report.
-    "bounds" BoundFields {
+    "bounds" pub(crate) BoundFields {
         /// The greatest that is allowed.
         at_most: Option<Sp<f64>>;
         /// The least that is allowed.

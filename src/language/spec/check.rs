@@ -8,7 +8,7 @@ use crate::language::value::{Data, Value, show_number};
 
 /// Bounds on the numbers of a field and on how many items its array has.
 #[derive(Clone, Copy, Debug)]
-pub struct Check {
+pub(crate) struct Check {
     above: Option<f64>,
     least: Option<f64>,
     most: Option<f64>,

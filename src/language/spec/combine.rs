@@ -1,7 +1,7 @@
 //! Shapes made from other shapes: copies, mirror images, arrays, groups.
 
 use glam::DVec3;
-use serde_json::{Value as Json, json};
+use serde_json::Value as Json;
 
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
@@ -11,13 +11,13 @@ use crate::language::spec::kind::choice;
 use crate::language::spec::point::Count;
 use crate::language::spec::reader::{Read, Reader};
 use crate::language::spec::reference::ShapeReference;
-use crate::language::spec::schema::Schemas;
+use crate::language::spec::schema::{Schemas, any_of, one_of_words};
 use crate::language::spec::spanned::Sp;
 use crate::language::value::{Data, Value};
 
 table! {
     /// Another shape again, to be placed or given a material of its own.
-    "copy" Copy {
+    "copy" pub Copy {
         /// The shape: its name, or a shape in place.
         of: ShapeReference;
     }
@@ -25,7 +25,7 @@ table! {
 
 table! {
     /// Another shape and its mirror image.
-    "mirror" Mirror {
+    "mirror" pub Mirror {
         /// The shape: its name, or a shape in place.
         of: ShapeReference;
         /// The mirror: `"x"` is the plane x = 0, and so on; or `{ normal = [x, y, z], point = [x, y, z] }`.
@@ -46,7 +46,7 @@ pub struct Plane {
 
 table! {
     /// A plane by its normal and a point.
-    "plane" PlaneFields {
+    "plane" pub(crate) PlaneFields {
         /// The direction in which the plane looks; any length but 0.
         normal: Sp<DVec3>;
         /// A point on it.
@@ -57,7 +57,7 @@ table! {
 
 table! {
     /// Another shape many times: in a row, in a block, or around.
-    "array" Array {
+    "array" pub Array {
         /// The shape: its name, or a shape in place.
         of: ShapeReference;
         /// How many: `n` in a row, or `[nx, ny, nz]` in a block.
@@ -74,7 +74,7 @@ table! {
 
 table! {
     /// Several shapes as one mesh; each keeps its material.
-    "group" Group {
+    "group" pub Group {
         /// The shapes: their names, or shapes in place.
         of: Vec<ShapeReference> => Check::items(1);
     }
@@ -134,7 +134,8 @@ impl Read for Plane {
     }
 
     fn schema(schemas: &mut Schemas) -> Json {
-        let words = json!({ "anyOf": [{ "enum": ["x", "y", "z"] }, { "pattern": "^= " }] });
-        json!({ "if": { "type": "object" }, "then": PlaneFields::schema(schemas), "else": words })
+        let mut alternatives = one_of_words(&["x", "y", "z"]);
+        alternatives.push(PlaneFields::schema(schemas));
+        any_of(alternatives)
     }
 }

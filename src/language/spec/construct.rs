@@ -3,28 +3,25 @@
 //! One declaration of a table gives its Rust type, its reader, its JSON Schema and its section of the
 //! reference page. Doc comments are for the artist who writes the document.
 
-/// Declares a table: `field: Type = default => check;`. A field without a default must be written unless
+/// Declares a table, `"title in messages" pub Name`: `field: Type = default => check;`. A field without a default must be written unless
 /// its type says what its absence means ([`Option`]). A `check` is a [`Check`](super::check::Check). After
 /// the fields, `checked` names a method `fn(&self, Span, &mut Reader) -> bool` that looks at all of them.
 macro_rules! table {
     (
         $(#[doc = $doc:literal])+
-        $title:literal $name:ident {
+        $title:literal $vis:vis $name:ident {
             $($(#[doc = $field_doc:literal])+ $field:ident: $type:ty $(= $default:expr)? $(=> $check:expr)?;)*
         }
         $(checked $checked:ident)?
     ) => {
         $(#[doc = $doc])+
         #[derive(Clone, Debug, PartialEq)]
-        pub struct $name {$(
+        $vis struct $name {$(
             $(#[doc = $field_doc])+
-            pub $field: $type,
+            $vis $field: $type,
         )*}
 
         impl $name {
-            /// The names of its fields in Rust.
-            pub(crate) const FIELDS: &[&str] = &[$(stringify!($field)),*];
-
             /// Reads these fields of a table that may have others.
             pub(crate) fn take(
                 fields: &mut $crate::language::spec::reader::Fields<'_>,

@@ -44,7 +44,7 @@ kinds! {
 
 table! {
     /// A straight line between two points.
-    "line" Line {
+    "line" pub Line {
         /// Where it starts.
         from: Sp<Point>;
         /// Where it ends.
@@ -55,7 +55,7 @@ table! {
 
 table! {
     /// Straight lines from point to point, with a corner at each.
-    "polyline" Polyline {
+    "polyline" pub Polyline {
         /// The corners, in order.
         points: Vec<Sp<Point>> => Check::items(2);
         /// Whether a last line leads back to the first point.
@@ -66,7 +66,7 @@ table! {
 
 table! {
     /// A full circle in the x, y plane. It starts at the right and turns counterclockwise.
-    "circle" Circle {
+    "circle" pub Circle {
         /// Radius, in the document's unit.
         radius: Sp<f64> => Check::above(0.0);
         /// The center.
@@ -76,7 +76,7 @@ table! {
 
 table! {
     /// A full ellipse in the x, y plane, its axes along x and y. It starts at the right and turns counterclockwise.
-    "ellipse" Ellipse {
+    "ellipse" pub Ellipse {
         /// Half of the width and half of the height, in the document's unit.
         radii: Sp<glam::DVec2> => Check::above(0.0);
         /// The center.
@@ -86,7 +86,7 @@ table! {
 
 table! {
     /// A screw line around the y axis: it starts at `[radius, 0, 0]` and climbs along +y, counterclockwise seen from above.
-    "helix" Helix {
+    "helix" pub Helix {
         /// Radius at the start, in the document's unit.
         radius: Sp<f64> => Check::above(0.0);
         /// Radius at the end; the same as at the start when it is not written.
@@ -100,7 +100,7 @@ table! {
 
 table! {
     /// Another curve, run through from its end to its start.
-    "reverse" Reverse {
+    "reverse" pub Reverse {
         /// The curve.
         of: CurveReference;
     }
@@ -108,7 +108,7 @@ table! {
 
 table! {
     /// Another curve, scaled, then rotated, then moved.
-    "transform" Transform {
+    "transform" pub Transform {
         /// The curve.
         of: CurveReference;
         /// Factor of size: a number, or one for each axis.

@@ -72,7 +72,7 @@ choices! {
 
 table! {
     /// Facts about the asset, written into it.
-    "asset" Asset {
+    "asset" pub Asset {
         /// Its name; the name of the file when it is not written.
         name: Option<Sp<String>>;
         /// What it is.

@@ -26,7 +26,7 @@ pub struct FilePath {
 
 table! {
     /// A model from a file: Wavefront OBJ or STL.
-    "import" Import {
+    "import" pub Import {
         /// The file; the path is relative to this document and stays inside the project.
         file: Sp<FilePath>;
         /// Only this group or object of the file.

@@ -8,7 +8,7 @@ use crate::language::spec::suggest::closest;
 use crate::language::value::{Data, Value};
 
 /// A family of which a table holds exactly one kind.
-pub trait Kinds: Sized {
+pub(crate) trait Kinds: Sized {
     /// The family in words: `curve`.
     const TITLE: &'static str;
     /// The kinds as documents name them.
@@ -22,7 +22,7 @@ pub trait Kinds: Sized {
 }
 
 /// Takes the one kind among the fields of a table; reports none and several.
-pub fn take_kind<K: Kinds>(fields: &mut Fields<'_>, reader: &mut Reader<'_>) -> Option<K> {
+pub(crate) fn take_kind<K: Kinds>(fields: &mut Fields<'_>, reader: &mut Reader<'_>) -> Option<K> {
     fields.know(K::NAMES);
     let table = fields.table();
     let present: Vec<_> =
@@ -75,7 +75,7 @@ fn report_none<K: Kinds>(fields: &Fields<'_>, reader: &mut Reader<'_>) {
 }
 
 /// The word of a value among `words`; reports anything else.
-pub fn choice<'w>(value: &Value, words: &[&'w str], reader: &mut Reader<'_>) -> Option<&'w str> {
+pub(crate) fn choice<'w>(value: &Value, words: &[&'w str], reader: &mut Reader<'_>) -> Option<&'w str> {
     let listed = words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ");
     let Data::String(text) = &value.data else {
         reader.mismatch(value, &format!("one of {listed}"));

@@ -42,7 +42,7 @@ impl Default for Limits {
 
 table! {
     /// How much this document may ask for. A document can only lower the limits; the command line may raise them.
-    "limits" LimitFields {
+    "limits" pub(crate) LimitFields {
         /// Most triangles of one asset; 50 million when it is not written.
         triangles: Option<Sp<u64>>;
         /// Most vertices of one asset; 50 million when it is not written.
@@ -60,7 +60,7 @@ table! {
 
 /// A size of memory in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Bytes(pub u64);
+pub(crate) struct Bytes(pub(crate) u64);
 
 /// Units of memory, with the letters that name them.
 const UNITS: [(&str, u64); 8] = [

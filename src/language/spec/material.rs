@@ -9,13 +9,13 @@ use crate::language::spec::construct::{choices, table};
 use crate::language::spec::import::FilePath;
 use crate::language::spec::point::read_numbers;
 use crate::language::spec::reader::{Read, Reader, backtick};
-use crate::language::spec::schema::{Schemas, numbers};
+use crate::language::spec::schema::{Schemas, any_of, numbers};
 use crate::language::spec::spanned::Sp;
 use crate::language::value::{Data, Value, show_number};
 
 table! {
     /// How a surface looks.
-    "material" Material {
+    "material" pub Material {
         /// Its color: `"#rrggbb"` or `"#rrggbbaa"` as on screen (sRGB), or linear `[r, g, b]` or `[r, g, b, a]`.
         color: Sp<Color> = Color::WHITE;
         /// 0 is a plastic, a stone, a wood; 1 a metal.
@@ -73,7 +73,7 @@ pub struct Texture {
 
 table! {
     /// An image on a surface.
-    "texture" TextureFields {
+    "texture" pub(crate) TextureFields {
         /// The image, PNG or JPEG; the path is relative to this document.
         file: Sp<FilePath>;
         /// What lies beyond its borders.
@@ -147,8 +147,7 @@ impl Read for Texture {
     }
 
     fn schema(schemas: &mut Schemas) -> Json {
-        let table = TextureFields::schema(schemas);
-        json!({ "if": { "type": "object" }, "then": table, "else": { "type": "string" } })
+        any_of(vec![json!({ "type": "string" }), TextureFields::schema(schemas)])
     }
 }
 

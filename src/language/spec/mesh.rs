@@ -11,7 +11,7 @@ use crate::language::spec::spanned::Sp;
 
 table! {
     /// Points and faces, written out. Faces turn counterclockwise seen from outside.
-    "mesh" Mesh {
+    "mesh" pub Mesh {
         /// The points, `[x, y, z]`, in the document's unit.
         points: Vec<Sp<DVec3>> => Check::items(3);
         /// The faces: for each, the indices of its corners in `points`, from 0.

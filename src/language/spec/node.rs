@@ -10,7 +10,7 @@ use crate::language::spec::spanned::Sp;
 
 table! {
     /// A place in the model: it shows a shape, or only carries other nodes. Nodes that show the same shape share one mesh.
-    "node" Node {
+    "node" pub Node {
         /// The name of the shape that it shows.
         shape: Option<Sp<ShapeName>>;
         /// The name of the node that carries it.

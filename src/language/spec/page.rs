@@ -5,8 +5,9 @@ use std::fmt::Write;
 use serde_json::{Map, Value as Json};
 
 use crate::language::expression::FUNCTIONS;
+use crate::language::spec::schema::ORDER;
 use crate::language::spec::section::SECTIONS;
-use crate::language::spec::whole::schema;
+use crate::language::spec::whole::ordered;
 use crate::language::value::show_number;
 
 /// The chapters after the first, and the tables that stand in each.
@@ -46,7 +47,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 5] = [
 /// The reference page of the language, as Markdown.
 #[must_use]
 pub fn reference() -> String {
-    let schema = schema();
+    let schema = ordered();
     let mut page =
         String::from("# Reference\n\nEvery number may be an expression: a string that begins with `= `.\n");
     page.push_str("Lengths are in the document's unit, angles in degrees.\n\n## A document\n\n");
@@ -68,10 +69,11 @@ pub fn reference() -> String {
 
 fn table(name: &str, schema: &Json) -> String {
     let mut text = format!("\n### {name}\n\n{}\n", schema["description"].as_str().unwrap_or_default());
-    let Some(properties) = schema["properties"].as_object() else { return text };
+    let Some(order) = schema[ORDER].as_array() else { return text };
     let required = schema["required"].as_array().map(Vec::as_slice).unwrap_or_default();
     text.push_str("\n| key | type | default | meaning |\n| --- | --- | --- | --- |\n");
-    for (key, field) in properties {
+    for key in order.iter().filter_map(Json::as_str) {
+        let field = &schema["properties"][key];
         let default = match field.get("default") {
             Some(default) => format!("`{}`", toml(default)),
             None if required.iter().any(|name| name == key) => "required".to_owned(),
@@ -96,10 +98,12 @@ fn kind(schema: &Json) -> String {
     if let Some(target) = schema["$ref"].as_str() {
         return format!("table `{}`", target.trim_start_matches("#/$defs/"));
     }
-    if let (Some(then), Some(other)) = (schema.get("then"), schema.get("else")) {
-        return format!("{} or {}", kind(other), kind(then));
+    if let Some(alternatives) = schema["anyOf"].as_array() {
+        let kinds =
+            alternatives.iter().filter(|schema| schema["pattern"] != "^= " || schema["type"] != "string");
+        return kinds.map(kind).collect::<Vec<_>>().join(" or ");
     }
-    if let Some(words) = schema.pointer("/anyOf/0/enum").and_then(Json::as_array) {
+    if let Some(words) = schema["enum"].as_array() {
         return words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
     }
     let names: Vec<&str> = match &schema["type"] {
@@ -124,13 +128,14 @@ fn describe(name: &str, schema: &Json, object: Option<&Map<String, Json>>) -> St
         }
         "boolean" => "true or false".to_owned(),
         "array" => {
-            let count = match (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {
-                (Some(least), Some(most)) if least == most => format!("{least} "),
-                (Some(least), Some(most)) => format!("{least} to {most} "),
-                (Some(least), None) => format!("at least {least} "),
-                _ => String::new(),
-            };
-            format!("list of {count}({})", kind(&schema["items"]))
+            let item = kind(&schema["items"]);
+            let plural = item.replacen("number", "numbers", 1);
+            match (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {
+                (Some(least), Some(most)) if least == most => format!("{least} {plural}"),
+                (Some(least), Some(most)) => format!("{least} or {most} {plural}"),
+                (Some(least), None) => format!("list of at least {least} ({item})"),
+                _ => format!("list of ({item})"),
+            }
         }
         "object" => match schema.get("additionalProperties") {
             Some(value) if value.is_object() => format!("table of ({})", kind(value)),

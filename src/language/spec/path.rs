@@ -17,7 +17,7 @@ use crate::language::value::Value;
 
 table! {
     /// Lines, arcs and splines joined end to end: each segment starts where the one before ends.
-    "path" Path {
+    "path" pub Path {
         /// Where it starts.
         start: Sp<Point>;
         /// The segments, in order.
@@ -78,7 +78,7 @@ pub enum ArcSegment {
 
 table! {
     /// A part of a circle from the current point of a path: either `through` and `to`, or `center` and `angle`.
-    "arc segment" ArcSegmentFields {
+    "arc segment" pub(crate) ArcSegmentFields {
         /// A point between start and end.
         through: Option<Sp<Point>>;
         /// Where it ends.

@@ -7,7 +7,7 @@ use crate::language::spec::spanned::Sp;
 
 table! {
     /// A profile turned about the y axis: x of the profile is the radius, y goes along the axis.
-    "revolve" Revolve {
+    "revolve" pub Revolve {
         /// The profile: the name of a curve, or a curve in place. Its x must not be negative.
         profile: CurveReference;
         /// How far it is turned, in degrees.
@@ -21,7 +21,7 @@ table! {
 
 table! {
     /// A flat, closed profile drawn out along the z axis.
-    "extrude" Extrude {
+    "extrude" pub Extrude {
         /// The outline in the x, y plane: the name of a closed curve, or a curve in place.
         profile: CurveReference;
         /// Closed curves inside the outline that are cut out.
@@ -37,7 +37,7 @@ table! {
 
 table! {
     /// A profile drawn along a curve: x of the profile runs to the side, y up.
-    "sweep" Sweep {
+    "sweep" pub Sweep {
         /// The profile: the name of a curve, or a curve in place.
         profile: CurveReference;
         /// The curve that it is drawn along.

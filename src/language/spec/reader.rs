@@ -9,7 +9,7 @@ use crate::language::spec::suggest::closest;
 use crate::language::value::{Data, Table, Value, quote};
 
 /// A type that can be read from a value.
-pub trait Read: Sized {
+pub(crate) trait Read: Sized {
     /// Reads the value; reports what is wrong and answers `None` where it cannot.
     fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self>;
 
@@ -29,7 +29,7 @@ pub trait Read: Sized {
 
 /// What is known while values are read: where we are, what was wrong, which names were used.
 #[derive(Debug)]
-pub struct Reader<'a> {
+pub(crate) struct Reader<'a> {
     /// The texts that spans point into.
     pub(crate) sources: &'a SourceMap,
     /// Everything reported so far.
@@ -50,18 +50,18 @@ enum Step {
 impl<'a> Reader<'a> {
     /// A reader of values that were written in `sources`.
     #[must_use]
-    pub fn new(sources: &'a SourceMap) -> Self {
+    pub(crate) fn new(sources: &'a SourceMap) -> Self {
         Self { sources, diagnostics: Vec::new(), uses: Vec::new(), user: None, path: Vec::new() }
     }
 
     /// Adds a diagnostic.
-    pub fn report(&mut self, diagnostic: Diagnostic) {
+    pub(crate) fn report(&mut self, diagnostic: Diagnostic) {
         self.diagnostics.push(diagnostic);
     }
 
     /// The field that is being read as a message names it: `` `points[3]` ``, or `the value`.
     #[must_use]
-    pub fn place(&self) -> String {
+    pub(crate) fn place(&self) -> String {
         let Some(last) = self.path.iter().rposition(|step| matches!(step, Step::Name(_))) else {
             return "the value".to_owned();
         };
@@ -131,7 +131,7 @@ fn hint_expression(report: Diagnostic, text: &str, span: Span) -> Diagnostic {
 
 /// The entries of one table, taken by name; what remains is unknown.
 #[derive(Debug)]
-pub struct Fields<'v> {
+pub(crate) struct Fields<'v> {
     table: &'v Table,
     span: Span,
     known: Vec<&'static str>,
@@ -141,7 +141,7 @@ pub struct Fields<'v> {
 
 impl<'v> Fields<'v> {
     /// Opens a table that reads as `title` (`"circle"`).
-    pub fn open(value: &'v Value, title: &'static str, reader: &mut Reader<'_>) -> Option<Self> {
+    pub(crate) fn open(value: &'v Value, title: &'static str, reader: &mut Reader<'_>) -> Option<Self> {
         let Data::Table(table) = &value.data else {
             reader.mismatch(value, "a table");
             return None;
@@ -150,7 +150,7 @@ impl<'v> Fields<'v> {
     }
 
     /// Reads a field. Rust's `end_radius` is TOML's `end-radius`.
-    pub fn take<T: Read>(
+    pub(crate) fn take<T: Read>(
         &mut self,
         name: &'static str,
         default: Option<fn() -> T>,
@@ -172,7 +172,7 @@ impl<'v> Fields<'v> {
     }
 
     /// The value of a field, unread; the field is then known.
-    pub fn raw(&mut self, name: &'static str) -> Option<&'v Value> {
+    pub(crate) fn raw(&mut self, name: &'static str) -> Option<&'v Value> {
         self.known.push(name);
         if name.contains('_') {
             return self.table.get(&name.replace('_', "-"));
@@ -181,23 +181,23 @@ impl<'v> Fields<'v> {
     }
 
     /// Names that this table knows beside those that were taken.
-    pub fn know(&mut self, names: &[&'static str]) {
+    pub(crate) fn know(&mut self, names: &[&'static str]) {
         self.known.extend_from_slice(names);
     }
 
     /// The place of the table.
     #[must_use]
-    pub fn span(&self) -> Span {
+    pub(crate) fn span(&self) -> Span {
         self.span
     }
 
     /// The entries of the table, whether taken or not.
-    pub fn table(&self) -> &'v Table {
+    pub(crate) fn table(&self) -> &'v Table {
         self.table
     }
 
     /// Reports the keys that nobody took and the fields that are missing. Whether all is well.
-    pub fn close(self, reader: &mut Reader<'_>) -> bool {
+    pub(crate) fn close(self, reader: &mut Reader<'_>) -> bool {
         let meant = self.unknown(reader);
         // A misspelt field is not missing too.
         let missing =
@@ -215,7 +215,7 @@ impl<'v> Fields<'v> {
 
     /// The keys that nobody took so far, with their places.
     #[must_use]
-    pub fn unknown_names(&self) -> Vec<(&'v str, Span)> {
+    pub(crate) fn unknown_names(&self) -> Vec<(&'v str, Span)> {
         let entries = self.table.entries.iter().map(|(name, entry)| (name.as_str(), entry.key));
         entries.filter(|(name, _)| !self.known.iter().any(|known| same_name(known, name))).collect()
     }

@@ -6,7 +6,7 @@ use crate::language::source::Span;
 use crate::language::spec::curve::Curve;
 use crate::language::spec::kind::take_kind;
 use crate::language::spec::reader::{Fields, Read, Reader};
-use crate::language::spec::schema::Schemas;
+use crate::language::spec::schema::{Schemas, any_of};
 use crate::language::spec::shape::ShapeDefinition;
 use crate::language::spec::spanned::Sp;
 use crate::language::value::{Data, Value};
@@ -42,15 +42,15 @@ impl Family {
 
 /// A name where one definition uses another.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Use {
+pub(crate) struct Use {
     /// The family in which the name is looked up.
-    pub family: Family,
+    pub(crate) family: Family,
     /// The name.
-    pub name: String,
+    pub(crate) name: String,
     /// Where it is written.
-    pub span: Span,
+    pub(crate) span: Span,
     /// The definition that uses it.
-    pub user: Option<(Family, String)>,
+    pub(crate) user: Option<(Family, String)>,
 }
 
 /// The curve that a field asks for.
@@ -109,7 +109,7 @@ impl Read for CurveReference {
     }
 
     fn schema(schemas: &mut Schemas) -> Json {
-        named_or_inline(&Curve::schema(schemas))
+        named_or_inline(Curve::schema(schemas))
     }
 }
 
@@ -129,7 +129,7 @@ impl Read for ShapeReference {
     }
 
     fn schema(schemas: &mut Schemas) -> Json {
-        named_or_inline(&ShapeDefinition::schema(schemas))
+        named_or_inline(ShapeDefinition::schema(schemas))
     }
 }
 
@@ -198,7 +198,6 @@ fn named(family: Family, name: &str, span: Span, reader: &mut Reader<'_>) -> Sp<
     Sp::new(name.to_owned(), span)
 }
 
-fn named_or_inline(table: &Json) -> Json {
-    // Not `anyOf`: with it an editor reports only that neither fits, instead of what is wrong inside.
-    json!({ "if": { "type": "object" }, "then": table, "else": { "type": "string" } })
+fn named_or_inline(table: Json) -> Json {
+    any_of(vec![json!({ "type": "string" }), table])
 }

@@ -10,7 +10,7 @@ use crate::language::spec::spanned::Sp;
 use crate::language::value::{Data, Value};
 
 /// The greatest number of a document, by size. Its fifth power, which moments of inertia need, is still finite.
-pub const GREATEST: f64 = 1e15;
+pub(crate) const GREATEST: f64 = 1e15;
 
 /// A finite number of the value; reports everything else.
 pub(crate) fn finite(value: &Value, reader: &mut Reader<'_>) -> Option<f64> {

@@ -5,27 +5,31 @@ use serde_json::{Map, Value as Json, json};
 use crate::language::spec::check::Check;
 use crate::language::spec::reader::Read;
 
+/// Under this key stands the order of the properties, which a JSON map does not keep, for the reference page.
+pub(crate) const ORDER: &str = "x-order";
+
 /// What an expression looks like.
 const EXPRESSION: &str = "^= ";
 
 /// The named schemas of a document: one for each kind of table.
 #[derive(Debug, Default)]
-pub struct Schemas {
+pub(crate) struct Schemas {
     definitions: Map<String, Json>,
 }
 
 /// The schema of one table while it is described.
 #[derive(Debug, Default)]
-pub struct Object {
+pub(crate) struct Object {
     properties: Map<String, Json>,
     required: Vec<String>,
     kinds: Vec<String>,
+    order: Vec<String>,
     fields: usize,
 }
 
 impl Schemas {
     /// The reference to the schema of a table; it is described once, when it is first asked for.
-    pub fn object(&mut self, title: &str, doc: &str, describe: fn(&mut Object, &mut Self)) -> Json {
+    pub(crate) fn object(&mut self, title: &str, doc: &str, describe: fn(&mut Object, &mut Self)) -> Json {
         if !self.definitions.contains_key(title) {
             // The name stands before the description, so that a table may hold itself.
             self.definitions.insert(title.to_owned(), Json::Null);
@@ -38,14 +42,14 @@ impl Schemas {
 
     /// All named schemas.
     #[must_use]
-    pub fn into_definitions(self) -> Map<String, Json> {
+    pub(crate) fn into_definitions(self) -> Map<String, Json> {
         self.definitions
     }
 }
 
 impl Object {
     /// Adds a field.
-    pub fn field<T: Read>(
+    pub(crate) fn field<T: Read>(
         &mut self,
         name: &str,
         doc: &str,
@@ -63,20 +67,21 @@ impl Object {
             None => {}
         }
         self.fields += 1;
+        self.order.push(name.clone());
         self.properties.insert(name, schema);
     }
 
+    /// Whether it has a property of this name.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.properties.contains_key(name)
+    }
+
     /// Adds a kind, of which the table holds exactly one.
-    pub fn kind<T: Read>(&mut self, name: &str, doc: &str, schemas: &mut Schemas) {
+    pub(crate) fn kind<T: Read>(&mut self, name: &str, doc: &str, schemas: &mut Schemas) {
         let mut schema = T::schema(schemas);
         describe(&mut schema, doc);
         self.kinds.push(name.to_owned());
-        self.properties.insert(name.to_owned(), schema);
-    }
-
-    /// Adds a property as it is.
-    pub fn property(&mut self, name: &str, schema: Json) {
-        self.fields += 1;
+        self.order.push(name.to_owned());
         self.properties.insert(name.to_owned(), schema);
     }
 
@@ -87,6 +92,7 @@ impl Object {
             "type": "object",
             "properties": self.properties,
             "additionalProperties": false,
+            ORDER: self.order,
         });
         if !self.required.is_empty() {
             schema["required"] = json!(self.required);
@@ -104,13 +110,13 @@ impl Object {
 
 /// The schema of a type, which an expression may compute too.
 #[must_use]
-pub fn or_expression(kind: &str) -> Json {
+pub(crate) fn or_expression(kind: &str) -> Json {
     json!({ "type": [kind, "string"], "pattern": EXPRESSION })
 }
 
 /// The schema of an array that may be computed: written out, an expression, or `{ count, each }`.
 #[must_use]
-pub fn array(items: Json) -> Json {
+pub(crate) fn array(items: Json) -> Json {
     json!({
         "type": ["array", "object", "string"],
         "pattern": EXPRESSION,
@@ -131,7 +137,7 @@ pub fn array(items: Json) -> Json {
 
 /// The schema of `length` numbers, or of from `length.0` to `length.1`.
 #[must_use]
-pub fn numbers(least: usize, most: usize) -> Json {
+pub(crate) fn numbers(least: usize, most: usize) -> Json {
     let mut schema = array(or_expression("number"));
     schema["minItems"] = json!(least);
     schema["maxItems"] = json!(most);
@@ -140,10 +146,22 @@ pub fn numbers(least: usize, most: usize) -> Json {
 
 /// The schema of a choice among words, each with its meaning.
 #[must_use]
-pub fn words(choices: &[(&str, &str)]) -> Json {
+pub(crate) fn words(choices: &[(&str, &str)]) -> Json {
     let names: Vec<_> = choices.iter().map(|(name, _)| *name).collect();
     let meanings: Vec<_> = choices.iter().map(|(name, doc)| format!("- `{name}`: {}", tidy(doc))).collect();
-    json!({ "type": "string", "anyOf": [{ "enum": names }, { "pattern": EXPRESSION }], "choices": meanings })
+    let mut schema = any_of(one_of_words(&names));
+    schema["choices"] = json!(meanings);
+    schema
+}
+
+/// The alternatives of a choice among words: the words, or an expression.
+pub(crate) fn one_of_words(words: &[&str]) -> Vec<Json> {
+    vec![json!({ "type": "string", "enum": words }), json!({ "type": "string", "pattern": EXPRESSION })]
+}
+
+/// One of several schemas that differ in type.
+pub(crate) fn any_of(schemas: Vec<Json>) -> Json {
+    json!({ "anyOf": schemas })
 }
 
 fn describe(schema: &mut Json, doc: &str) {
@@ -164,7 +182,7 @@ fn set_default(schema: &mut Json, default: Option<Json>) {
 
 /// A doc comment without the space that begins each of its lines.
 #[must_use]
-pub fn tidy(doc: &str) -> String {
+pub(crate) fn tidy(doc: &str) -> String {
     let lines: Vec<_> = doc.lines().map(|line| line.strip_prefix(' ').unwrap_or(line).trim_end()).collect();
     lines.join("\n").trim().to_owned()
 }

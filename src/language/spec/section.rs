@@ -15,6 +15,7 @@ use crate::language::spec::name::check_name;
 use crate::language::spec::reader::{Read, Reader, backtick, unknown_field};
 use crate::language::spec::reference::Family;
 use crate::language::spec::resolve::{Names, resolve};
+use crate::language::spec::schema::{Object, Schemas};
 use crate::language::spec::shape::{Shape, ShapeOptions};
 use crate::language::spec::spanned::Sp;
 use crate::language::value::{Data, Entry, Table};
@@ -92,7 +93,7 @@ fn unknown_sections(table: &Table, reader: &mut Reader<'_>) {
         }
         let known: Vec<String> = SECTIONS.iter().map(|(known, _)| (*known).to_owned()).collect();
         let report = unknown_field(name, entry.key, &known, "a document");
-        let shape_field = ShapeOptions::FIELDS.contains(&name.replace('-', "_").as_str());
+        let shape_field = is_shape_field(name);
         reader.report(match (shape_field, &entry.value.data) {
             (true, _) => report.help(format!("`{name}` is a field of [shape.NAME]")),
             (_, Data::Table(_)) if Shape::NAMES.contains(&name.as_str()) => {
@@ -104,6 +105,12 @@ fn unknown_sections(table: &Table, reader: &mut Reader<'_>) {
             _ => report,
         });
     }
+}
+
+fn is_shape_field(name: &str) -> bool {
+    let mut fields = Object::default();
+    ShapeOptions::describe(&mut fields, &mut Schemas::default());
+    fields.has(name)
 }
 
 fn family<T: Read>(

@@ -28,7 +28,7 @@ pub struct ShapeDefinition {
 
 table! {
     /// Fields of every shape, beside the table of its kind.
-    "shape" ShapeOptions {
+    "shape" pub ShapeOptions {
         /// How far the mesh may lie from the true surface, in the document's unit. When it is not written, the
         /// document's `tolerance` holds, else the diagonal of the bounding box / 2000.
         tolerance: Option<Sp<f64>> => Check::above(0.0);
@@ -109,7 +109,7 @@ kinds! {
 
 table! {
     /// A box with flat sides.
-    "box" BoxShape {
+    "box" pub BoxShape {
         /// Width along x, height along y and depth along z, in the document's unit.
         size: Sp<DVec3> => Check::above(0.0);
         /// The middle.
@@ -119,7 +119,7 @@ table! {
 
 table! {
     /// A ball.
-    "sphere" Sphere {
+    "sphere" pub Sphere {
         /// Radius, in the document's unit.
         radius: Sp<f64> => Check::above(0.0);
         /// The middle.
@@ -129,7 +129,7 @@ table! {
 
 table! {
     /// A cylinder that stands along the y axis, closed at both ends.
-    "cylinder" Cylinder {
+    "cylinder" pub Cylinder {
         /// Radius, in the document's unit.
         radius: Sp<f64> => Check::above(0.0);
         /// Height along y, in the document's unit.

@@ -9,13 +9,13 @@ use crate::language::spec::construct::table;
 use crate::language::spec::kind::choice;
 use crate::language::spec::point::Point;
 use crate::language::spec::reader::{Read, Reader};
-use crate::language::spec::schema::Schemas;
+use crate::language::spec::schema::{Schemas, any_of, one_of_words};
 use crate::language::spec::spanned::Sp;
 use crate::language::value::{Data, Value, show_number};
 
 table! {
     /// A smooth curve through points: a cubic spline whose curvature is zero at both ends, or periodic when closed.
-    "natural-spline" NaturalSpline {
+    "natural-spline" pub NaturalSpline {
         /// The points that it goes through, in order.
         points: Vec<Sp<Point>> => Check::items(2);
         /// Whether it runs back to the first point, smooth there too.
@@ -43,7 +43,7 @@ pub enum Parameters {
 
 table! {
     /// Bezier curves joined end to end: each begins at the last point of the one before.
-    "bezier" Bezier {
+    "bezier" pub Bezier {
         /// End points and the control points between them, in one list: `degree` times the number of pieces, plus 1.
         points: Sp<Vec<Sp<Point>>> => Check::items(2);
         /// Degree of each piece: 3 is cubic.
@@ -65,10 +65,9 @@ impl Read for Parameters {
     }
 
     fn schema(schemas: &mut Schemas) -> Json {
-        let numbers = Vec::<f64>::schema(schemas);
-        let words =
-            json!({ "anyOf": [{ "enum": ["uniform", "chordal", "centripetal"] }, { "pattern": "^= " }] });
-        json!({ "if": { "type": "string" }, "then": words, "else": numbers })
+        let mut alternatives = one_of_words(&["uniform", "chordal", "centripetal"]);
+        alternatives.push(Vec::<f64>::schema(schemas));
+        any_of(alternatives)
     }
 
     fn written(&self) -> Option<Json> {

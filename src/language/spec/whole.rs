@@ -11,7 +11,7 @@ use crate::language::spec::limit::LimitFields;
 use crate::language::spec::material::Material;
 use crate::language::spec::node::Node;
 use crate::language::spec::reader::Read;
-use crate::language::spec::schema::Schemas;
+use crate::language::spec::schema::{ORDER, Schemas};
 use crate::language::spec::section::SECTIONS;
 use crate::language::spec::shape::ShapeDefinition;
 
@@ -24,6 +24,17 @@ const PARTIAL: &str = "-partial";
 /// The JSON Schema (draft 2020-12) of a document. Built anew at each call; not needed to read documents.
 #[must_use]
 pub fn schema() -> Json {
+    let mut schema = ordered();
+    if let Some(definitions) = schema["$defs"].as_object_mut() {
+        for definition in definitions.values_mut().filter_map(Json::as_object_mut) {
+            definition.remove(ORDER);
+        }
+    }
+    schema
+}
+
+/// The schema, with the order of properties beside them.
+pub(crate) fn ordered() -> Json {
     let mut schemas = Schemas::default();
     let sections: Map<String, Json> = SECTIONS
         .iter()
