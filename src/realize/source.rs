@@ -121,8 +121,11 @@ fn ranges(curve: &AnyCurve, corners: [f64; 3]) -> Vec<(f64, f64)> {
         (low, high) = wide(corners.map(|value| if value < middle { value + period } else { value }));
     }
     let margin = (high - low).max(1e-6 * period);
+    // Each range is one stretch between stations or nearly so: over several a few samples might miss the place.
+    let inside = |t: f64| t.clamp(domain.start, domain.end);
+    let around = [(low, high), (low - margin, low), (high, high + margin)];
+    let mut ranges: Vec<(f64, f64)> = around.iter().map(|(from, to)| (inside(*from), inside(*to))).collect();
     (low, high) = (low - margin, high + margin);
-    let mut ranges = vec![(low.clamp(domain.start, domain.end), high.clamp(domain.start, domain.end))];
     if closed && low < domain.start {
         ranges.push(((low + period).max(domain.start), domain.end));
     }
@@ -161,28 +164,55 @@ impl Source {
 }
 
 /// The section that holds the point is found by Newton's method on its place along the path; the rest is a
-/// distance in the plane of that section.
+/// distance in the plane of that section. Behind a mitre the surface goes on straight until it meets the other
+/// side, so at a corner what is left along the path does not count.
 fn swept_distance(surface: &SweptSurface, point: DVec3, window: &Window) -> f64 {
-    let along = ranges(&surface.path, window.v);
-    along.iter().map(|range| swept_within(surface, point, *range, window.u)).fold(f64::INFINITY, f64::min)
+    let joints = surface.path.joints();
+    let domain = surface.path.domain();
+    let low = window.v.into_iter().fold(f64::INFINITY, f64::min);
+    let high = window.v.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let corner_below = joints.iter().copied().filter(|t| *t <= low).fold(f64::NEG_INFINITY, f64::max);
+    let corner_above = joints.iter().copied().filter(|t| *t >= high).fold(f64::INFINITY, f64::min);
+    let margin = high - low;
+    let seam = surface.path.is_closed();
+    let stretch = Stretch {
+        low: (low - margin).max(corner_below).max(domain.start),
+        high: (high + margin).min(corner_above).min(domain.end),
+        open_below: corner_below >= low - margin || (seam && low - margin <= domain.start),
+        open_above: corner_above <= high + margin || (seam && high + margin >= domain.end),
+    };
+    swept_within(surface, point, &stretch, window.u)
 }
 
-fn swept_within(surface: &SweptSurface, point: DVec3, (low, high): (f64, f64), across: [f64; 3]) -> f64 {
-    let mut v = (low + high) / 2.0;
-    for _ in 0..8 {
-        let section = surface.section(v, Side::After);
+/// A smooth stretch of a path; at an open end it stops at a corner or a seam.
+struct Stretch {
+    low: f64,
+    high: f64,
+    open_below: bool,
+    open_above: bool,
+}
+
+fn swept_within(surface: &SweptSurface, point: DVec3, stretch: &Stretch, across: [f64; 3]) -> f64 {
+    let side = |v: f64| if v >= stretch.high { Side::Before } else { Side::After };
+    let mut v = (stretch.low + stretch.high) / 2.0;
+    for _ in 0..12 {
+        let section = surface.section(v, side(v));
         let away = point - section.origin;
         let lean = 1.0 - away.dot(section.curvature);
         if lean <= 0.0 {
             break;
         }
-        v = (v + away.dot(section.frame.along) / (section.speed * lean)).clamp(low, high);
+        let step = away.dot(section.frame.along) / (section.speed * lean);
+        v = (v + step).clamp(stretch.low, stretch.high);
     }
-    let section = surface.section(v, if v >= high { Side::Before } else { Side::After });
+    let section = surface.section(v, side(v));
     let away = point - section.origin;
     let flat = DVec3::new(away.dot(section.frame.side), away.dot(section.frame.up), 0.0);
     let across = distance_near(&surface.profile, flat, across);
-    hypot(across, away.dot(section.frame.along))
+    let along = away.dot(section.frame.along);
+    let beyond = (stretch.open_above && v == stretch.high && along > 0.0)
+        || (stretch.open_below && v == stretch.low && along < 0.0);
+    if beyond { across } else { hypot(across, along) }
 }
 
 /// The box of a recipe that is not an assembly, from points along its curves.
