@@ -4,7 +4,7 @@
 //! (collinear ones stay connected, so neighbours meet without T-junctions), no triangle is turned over, and the
 //! areas add up. Corners that touch count as one place there; of the corners on a place, triangles name the one
 //! whose edge leaves the place at the sector they lie in. Where that cannot be had, the result is an error, never a wrong triangulation. Not promised:
-//! that a polygon that winds twice around a region is noticed; ask [`crossing`] for that.
+//! that a polygon that winds twice around a region is noticed; ask [`crossing()`] for that.
 //!
 //! Notation: a *ring* is a closed loop of points; ring 0 is the outer one, the others are holes and may run
 //! either way. A *corner* is a place in the rings, counted through all of them.
