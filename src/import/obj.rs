@@ -1,6 +1,6 @@
 //! Wavefront OBJ: polygons with UVs, normals, smoothing groups and materials.
 //!
-//! The text passes through [`lines`] first, which checks every line, keeps what the parser drops (smoothing groups,
+//! The text passes through `lines` first, which checks every line, keeps what the parser drops (smoothing groups,
 //! group names, which corners have attributes) and hands on a clean text of vertices and faces in one object; `tobj`
 //! parses that. Faces stay polygons: their triangulation is `geometry::mesh`'s.
 

@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 
 use crate::geometry::mesh::normals::{Smooth, corner_normals};
 use crate::geometry::mesh::polygon::{NONE, PolygonError};
-use crate::geometry::mesh::triangulate::{TriangulateError, triangulate_in_space};
+use crate::geometry::mesh::triangulate::{TriangulateError, split_quad, triangulate_in_space};
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, PolygonMesh, Run, Vertex, VertexIndex, index};
 
 /// Where normals come from.
@@ -48,7 +48,8 @@ pub struct Converted {
     pub materials: Vec<Option<u32>>,
     /// Faces that vanished because their corners stand on fewer than three positions.
     pub dropped_faces: Vec<u32>,
-    /// Faces that cross themselves and were cut as fans: their boundary is right, their inside may fold.
+    /// Faces that cross themselves, or are too bent to be seen flat, and were cut as fans: their boundary is right,
+    /// their inside may fold.
     pub crossing_faces: Vec<u32>,
 }
 
@@ -170,6 +171,13 @@ impl<'a> Splitter<'a> {
         let corners = self.source.corners_of(face);
         if corners.len() == 3 {
             return vec![[0, 1, 2]];
+        }
+        let loops = self.source.loops_of(face);
+        if corners.len() == 4 && loops.len() == 1 {
+            let positions = [0, 1, 2, 3].map(|step| self.source.position(corners.start + step));
+            if let Some(split) = split_quad(positions) {
+                return split.to_vec();
+            }
         }
         let rings: Vec<Vec<DVec3>> = self
             .source

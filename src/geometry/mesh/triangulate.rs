@@ -4,7 +4,7 @@
 //! (collinear ones stay connected, so neighbours meet without T-junctions), no triangle is turned over, and the
 //! areas add up. Corners that touch count as one place there; of the corners on a place, triangles name the one
 //! whose edge leaves the place at the sector they lie in. Where that cannot be had, the result is an error, never a wrong triangulation. Not promised:
-//! that a polygon that winds twice around a region is noticed; ask [`crossing`] for that.
+//! that a polygon that winds twice around a region is noticed; ask [`crossing()`] for that.
 //!
 //! Notation: a *ring* is a closed loop of points; ring 0 is the outer one, the others are holes and may run
 //! either way. A *corner* is a place in the rings, counted through all of them.
@@ -101,10 +101,42 @@ pub fn triangulate_in_space(rings: &[&[DVec3]]) -> Result<Vec<[u32; 3]>, Triangu
     if normal == DVec3::ZERO && rings.first().is_some_and(|ring| ring.len() >= 3) {
         return Err(TriangulateError::NoArea { ring: 0 });
     }
+    if let [&[a, b, c, d]] = *rings
+        && let Some(split) = split_quad([a, b, c, d])
+    {
+        return Ok(split.to_vec());
+    }
     let flat: Vec<Vec<DVec2>> =
         rings.iter().map(|ring| ring.iter().map(|&point| drop_axis(point, normal)).collect()).collect();
+    if hides_a_corner(rings, &flat) {
+        return Err(TriangulateError::Unsolved);
+    }
     let flat: Vec<&[DVec2]> = flat.iter().map(Vec::as_slice).collect();
     triangulate(&flat)
+}
+
+/// A quadrilateral in space cut along its first diagonal, or along the other where only that keeps both halves facing
+/// the way of the whole; `None` where neither does. Bent quadrilaterals are as good as flat ones.
+#[must_use]
+pub fn split_quad([a, b, c, d]: [DVec3; 4]) -> Option<[[u32; 3]; 2]> {
+    let normal = (c - a).cross(d - b);
+    let faces = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p).dot(normal) > 0.0;
+    if faces(a, b, c) && faces(a, c, d) {
+        Some([[0, 1, 2], [0, 2, 3]])
+    } else if faces(a, b, d) && faces(b, c, d) {
+        Some([[0, 1, 3], [1, 2, 3]])
+    } else {
+        None
+    }
+}
+
+/// Whether corners apart in space fall on one place in the view: the polygon is too bent to be seen flat.
+fn hides_a_corner(rings: &[&[DVec3]], flat: &[Vec<DVec2>]) -> bool {
+    let pairs = rings.iter().zip(flat).flat_map(|(ring, flat)| ring.iter().zip(flat));
+    // Adding zero turns -0 into 0, which the order would put apart.
+    let mut pairs: Vec<(DVec3, DVec2)> = pairs.map(|(&point, &flat)| (point, flat + DVec2::ZERO)).collect();
+    pairs.sort_by(|a, b| a.1.x.total_cmp(&b.1.x).then(a.1.y.total_cmp(&b.1.y)));
+    pairs.windows(2).any(|pair| pair[0].1 == pair[1].1 && pair[0].0 != pair[1].0)
 }
 
 /// The two coordinates across the largest component of `normal`, in the order that makes a ring that turns

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::super::error::quoted;
-use super::super::{ImportError, Note};
+use crate::import::error::quoted;
+use crate::import::{ImportError, Note};
 
 /// What the parser does not keep of a face.
 #[derive(Clone, Copy, Debug)]
@@ -274,13 +274,13 @@ impl Reader<'_> {
             }
         }
         let [vertex, uv, normal] = resolved;
-        let text = match (uv, normal) {
-            (0, 0) => format!(" {vertex}"),
-            (_, 0) => format!(" {vertex}/{uv}"),
-            (0, _) => format!(" {vertex}//{normal}"),
-            _ => format!(" {vertex}/{uv}/{normal}"),
-        };
-        self.scan.clean.extend_from_slice(text.as_bytes());
+        if word.contains(&b'-') {
+            let part = |index: u32| if index == 0 { String::new() } else { index.to_string() };
+            let absolute = format!("{vertex}/{}/{}", part(uv), part(normal));
+            self.emit(absolute.as_bytes());
+        } else {
+            self.emit(word);
+        }
         self.scan.has_uv.push(uv != 0);
         self.scan.has_normal.push(normal != 0);
         Ok(())

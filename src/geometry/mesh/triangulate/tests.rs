@@ -310,3 +310,24 @@ fn is_simple(ring: &Ring) -> bool {
     });
     clear && crossing(&[ring]).is_none()
 }
+
+#[test]
+fn bent_quads_keep_all_their_corners() {
+    // Seen along any axis, this quadrilateral has corners that fall together or edges that cross.
+    let bent = [DVec3::ZERO, DVec3::new(1.0, 0.0, 1.0), DVec3::new(1.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 1.0)];
+    let steep =
+        [DVec3::ZERO, DVec3::new(0.01, 0.0, 0.6), DVec3::new(0.01, 0.02, 0.0), DVec3::new(0.0, 0.02, 0.6)];
+    for quad in [bent, steep] {
+        let triangles = triangulate_in_space(&[&quad]).expect("a quadrilateral");
+        assert_eq!(triangles.len(), 2);
+        assert!((0..4).all(|corner| triangles.iter().flatten().any(|&used| used == corner)));
+    }
+}
+
+#[test]
+fn corners_hidden_by_the_view_are_not_lost() {
+    // The second and third corner differ only along the normal.
+    let rings = [(0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (4.0, 0.0, 0.5), (4.0, 4.0, 0.0), (0.0, 4.0, 0.0)];
+    let ring: Vec<DVec3> = rings.iter().map(|&(x, y, z)| DVec3::new(x, y, z)).collect();
+    assert_eq!(triangulate_in_space(&[&ring]), Err(TriangulateError::Unsolved));
+}
