@@ -2,5 +2,8 @@
 
 mod cases;
 mod codes;
+mod files;
+mod robust;
 mod schema;
 mod toml_corpus;
+mod values;

@@ -197,6 +197,9 @@ impl Scope for Parameters<'_> {
 
 impl Parameters<'_> {
     fn charge(&mut self, steps: u64, range: &Range<usize>) -> Result<(), Fault> {
+        if self.steps > self.most_steps {
+            return Err(Fault::reported(range.clone()));
+        }
         self.steps += steps;
         if self.steps <= self.most_steps {
             return Ok(());

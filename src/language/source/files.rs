@@ -78,7 +78,9 @@ impl FileError {
             Self::Missing => "not found",
             Self::Absolute => "write it relative to this document",
             Self::Outside => "must stay inside the project",
-            Self::NotPortable => "use `/` between parts, and none of `\\ : * ? \" < > |`",
+            Self::NotPortable => {
+                "use `/` between parts, none of `\\ : * ? \" < > |`, and no name that Windows reserves"
+            }
             Self::Folder => "expected a file",
             Self::TooLarge(_) => "too large",
             Self::Unreadable(_) => "cannot be read",
@@ -99,6 +101,9 @@ pub fn join(from: &str, written: &str) -> Result<String, FileError> {
     if !written.chars().all(portable) {
         return Err(FileError::NotPortable);
     }
+    if written.split('/').any(is_special_on_windows) {
+        return Err(FileError::NotPortable);
+    }
     let folder = from.rsplit_once('/').map_or("", |(folder, _)| folder);
     let mut parts: Vec<&str> = folder.split('/').filter(|part| !part.is_empty()).collect();
     for part in written.split('/') {
@@ -114,6 +119,16 @@ pub fn join(from: &str, written: &str) -> Result<String, FileError> {
         return Err(FileError::Folder);
     }
     Ok(parts.join("/"))
+}
+
+/// Whether a part of a path names a device on Windows, or loses its end there.
+fn is_special_on_windows(part: &str) -> bool {
+    const DEVICES: [&str; 4] = ["con", "prn", "aux", "nul"];
+    let stem = part.split('.').next().unwrap_or_default().to_ascii_lowercase();
+    let port = stem.strip_prefix("com").or(stem.strip_prefix("lpt"));
+    let numbered = port.is_some_and(|digit| digit.len() == 1 && digit.as_bytes()[0].is_ascii_digit());
+    let trimmed = !matches!(part, "." | "..") && part.ends_with(['.', ' ']);
+    DEVICES.contains(&stem.as_str()) || numbered || trimmed
 }
 
 #[derive(Debug, Default)]

@@ -86,7 +86,8 @@ impl Parser<'_> {
         if message == "duplicate key" {
             let report =
                 Diagnostic::error(Code::DuplicateName, format!("{} is written twice", name(snippet)));
-            return self.found.push(report.at(span, "the second time"));
+            let first = self.first_time(span).unwrap_or(Span::NONE);
+            return self.found.push(report.at(span, "the second time").also(first, "the first time"));
         }
         let report = Diagnostic::error(Code::Syntax, better(message, snippet)).at(span, label);
         self.found.push(match snippet.strip_prefix(',') {
@@ -95,6 +96,31 @@ impl Parser<'_> {
             }
             _ => report,
         });
+    }
+
+    /// Where a key that is written twice was written first: in the same header, or above under the same header.
+    fn first_time(&self, second: Span) -> Option<Span> {
+        let (file, range) = self.sources.range(second)?;
+        let (text, key) = (self.sources.text(file), self.sources.snippet(second));
+        let start = text[..range.start].rfind('\n').map_or(0, |at| at + 1);
+        let end = text[range.start..].find('\n').map_or(text.len(), |at| range.start + at);
+        let (line, offset) = (text[start..end].trim_end(), range.start - start);
+        let is_header = line.trim_start().starts_with('[');
+        let mut at = start;
+        for above in text[..start].split_inclusive('\n').rev() {
+            at -= above.len();
+            let named =
+                above.trim_start().strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with('='));
+            if is_header && above.trim_end() == line {
+                return Some(self.span(at + offset..at + offset + key.len()));
+            } else if !is_header && named {
+                let indent = above.len() - above.trim_start().len();
+                return Some(self.span(at + indent..at + indent + key.len()));
+            } else if !is_header && above.trim_start().starts_with('[') {
+                return None;
+            }
+        }
+        None
     }
 
     fn table(&mut self, table: DeTable<'_>) -> Table {
