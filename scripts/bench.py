@@ -16,6 +16,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import os
 import platform
 import subprocess
 import sys
@@ -31,7 +32,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PEERS = ROOT / "scripts" / "peers"
 PYTHON = ROOT / ".venv" / "bin" / "python"
 CAD_PYTHON = ROOT / ".venv-peers" / "bin" / "python"
-KILN = ROOT / "target" / "release" / "kiln"
+KILN = Path(os.environ.get("KILN_BIN", ROOT / "target" / "release" / "kiln"))
 MARKERS = ("<!-- bench:begin -->", "<!-- bench:end -->")
 PARTS = ("vase", "sweep", "tolerance", "memory")
 

@@ -93,7 +93,8 @@ def vase_curve() -> NDArray[np.float64]:
     t = np.linspace(0, 1, CURVE_SAMPLES // 2)[:, None]
     s = 1 - t
     weights = np.hstack([s**3, 3 * s * s * t, 3 * s * t * t, t**3])
-    return np.concatenate([weights @ control for control in np.array(BEZIERS)])
+    low, high = (weights @ control for control in np.array(BEZIERS))
+    return np.concatenate([low, high[1:]])  # no point twice: distances look at the pieces beside one point
 
 
 def sweep_deviation(mesh: trimesh.Trimesh) -> float:
