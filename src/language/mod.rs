@@ -1,10 +1,11 @@
-//! The language: from text to a typed, resolved [`Spec`](spec::Spec), or every error found.
+//! The language: from text to a typed, resolved [`Spec`], or every error found.
 
 pub mod diagnostic;
 mod document;
 pub mod expression;
 pub mod source;
 pub mod spec;
+mod suggest;
 pub mod value;
 
 pub use diagnostic::explain;

@@ -4,7 +4,8 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::document::parameters::Parameters;
 use crate::language::expression::{Computed, FUNCTIONS, body};
 use crate::language::source::{SourceMap, Span};
-use crate::language::spec::{backtick, check_name, closest};
+use crate::language::spec::{backtick, check_name};
+use crate::language::suggest::closest;
 use crate::language::value::{Data, Entry, Table, Value};
 
 /// The most items that the generators of a document make together.

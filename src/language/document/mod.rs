@@ -11,7 +11,8 @@ use crate::language::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::language::document::evaluate::evaluate;
 use crate::language::document::overlay::overlay;
 use crate::language::source::{Files, SourceMap};
-use crate::language::spec::{Spec, closest, read_spec};
+use crate::language::spec::{Spec, read_spec};
+use crate::language::suggest::closest;
 use crate::language::value::{Table, quote};
 
 /// A document and all that it includes, parsed but not evaluated.

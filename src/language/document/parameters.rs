@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::expression::{Computed, Evaluator, Expression, Fault, Scope, body, parse};
 use crate::language::source::{SourceMap, Span};
-use crate::language::spec::closest;
+use crate::language::suggest::closest;
 use crate::language::value::{Data, Table, Value};
 
 /// The most steps that the expressions of a document take together.

@@ -6,7 +6,7 @@ use crate::language::diagnostic::Code;
 use crate::language::expression::fault::Fault;
 use crate::language::expression::function::{FUNCTIONS, Function, find};
 use crate::language::expression::token::{Placed, Token, tokens};
-use crate::language::spec::closest;
+use crate::language::suggest::closest;
 
 /// How deep brackets, calls and signs may be nested.
 const DEEPEST: usize = 64;

@@ -59,7 +59,8 @@ impl FileError {
     /// The message of a diagnostic on the path as it is written.
     #[must_use]
     pub fn message(&self, written: &str) -> String {
-        let path = crate::language::value::quote(written);
+        // A path may hold anything; a message is one line.
+        let path = format!("\"{}\"", written.replace(char::is_control, "?"));
         match self {
             Self::Missing => format!("{path} does not exist"),
             Self::Absolute => format!("{path} is an absolute path"),

@@ -4,7 +4,7 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::reader::{Fields, Reader, backtick};
 use crate::language::spec::schema::{Object, Schemas};
-use crate::language::spec::suggest::closest;
+use crate::language::suggest::closest;
 use crate::language::value::{Data, Value};
 
 /// A family of which a table holds exactly one kind.

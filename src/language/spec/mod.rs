@@ -27,9 +27,9 @@ mod section;
 mod shape;
 mod spanned;
 mod spline;
-mod suggest;
 mod whole;
 
+pub use crate::language::suggest::closest;
 pub use arc::{Arc, CenterArc};
 pub use assertion::{Assertion, Demand, Expected};
 pub use combine::{Array, Copy, Group, Mirror, Plane};
@@ -48,7 +48,6 @@ pub use reference::{CurveReference, Family, MaterialName, NodeName, ShapeName, S
 pub use shape::{BoxShape, Cylinder, Shape, ShapeDefinition, ShapeOptions, Smoothing, Sphere, Uv};
 pub use spanned::Sp;
 pub use spline::{Bezier, NaturalSpline, Parameters};
-pub use suggest::closest;
 pub use whole::schema;
 
 pub(crate) use name::check_name;

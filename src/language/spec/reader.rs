@@ -5,7 +5,7 @@ use crate::language::source::{SourceMap, Span};
 use crate::language::spec::check::Check;
 use crate::language::spec::reference::{Family, Use};
 use crate::language::spec::schema::Schemas;
-use crate::language::spec::suggest::closest;
+use crate::language::suggest::closest;
 use crate::language::value::{Data, Table, Value, quote};
 
 /// A type that can be read from a value.

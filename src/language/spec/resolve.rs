@@ -9,7 +9,7 @@ use crate::language::source::Span;
 use crate::language::spec::reader::{Reader, backtick};
 use crate::language::spec::reference::{Family, Use};
 use crate::language::spec::section::{place_of, titled};
-use crate::language::spec::suggest::closest;
+use crate::language::suggest::closest;
 use crate::language::value::{Data, Table};
 
 /// Lists of names longer than this are not shown.
