@@ -5,5 +5,6 @@ mod codes;
 mod files;
 mod robust;
 mod schema;
+mod shown;
 mod toml_corpus;
 mod values;
