@@ -173,10 +173,14 @@ fn read_positions(
     }
     let (bytes, stride, count) = elements(root, binary, index, 12)?;
     positions.reserve_exact(count);
-    let number = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-    for k in 0..count {
-        let element = &bytes[k * stride..k * stride + 12];
-        positions.push([number(element), number(&element[4..]), number(&element[8..])]);
+    let element = |element: &[u8]| {
+        let (words, _) = element.as_chunks::<4>();
+        [words[0], words[1], words[2]].map(f32::from_le_bytes)
+    };
+    if stride == 12 {
+        positions.extend(bytes.chunks_exact(12).map(element));
+    } else {
+        positions.extend((0..count).map(|k| element(&bytes[k * stride..k * stride + 12])));
     }
     Ok(())
 }
@@ -200,6 +204,19 @@ fn read_indices(
         return Err(unsupported());
     }
     indices.reserve_exact(count);
+    match width {
+        2 if stride == 2 => {
+            let shorts = bytes.as_chunks::<2>().0.iter();
+            indices.extend(shorts.map(|short| base.saturating_add(u32::from(u16::from_le_bytes(*short)))));
+            return Ok(());
+        }
+        4 if stride == 4 => {
+            let words = bytes.as_chunks::<4>().0.iter();
+            indices.extend(words.map(|word| base.saturating_add(u32::from_le_bytes(*word))));
+            return Ok(());
+        }
+        _ => {}
+    }
     for k in 0..count {
         let mut word = [0; 4];
         word[..width].copy_from_slice(&bytes[k * stride..k * stride + width]);

@@ -95,8 +95,10 @@ fn binary_size(checked: Checked<'_>) -> usize {
         vertices * (24 + tangent + uv) + geometry.mesh.triangles.len() * 3 * index_width(vertices) + 64
     };
     let images: usize = scene.images.iter().map(|image| image.bytes.len() + 4).sum();
-    // The header and the JSON chunk are put before; a spare kilobyte a mesh holds most.
-    scene.geometries.iter().map(geometry).sum::<usize>() + images
+    // The header and the JSON chunk are put before: room for most, so that the bytes are not copied for it.
+    let json = 4096
+        + 1024 * (scene.geometries.len() + scene.meshes.len() + scene.materials.len() + scene.nodes.len());
+    scene.geometries.iter().map(geometry).sum::<usize>() + images + json
 }
 
 /// Bytes of an index: 0xFFFF restarts primitives and is no vertex.
@@ -253,10 +255,9 @@ impl Writer {
 }
 
 fn put<const N: usize>(bytes: &mut Vec<u8>, numbers: [f32; N]) {
-    for number in numbers {
-        // Zero has one form, so that equal positions are equal bytes.
-        bytes.extend_from_slice(&(number + 0.0).to_le_bytes());
-    }
+    // Zero has one form, so that equal positions are equal bytes.
+    let words = numbers.map(|number| (number + 0.0).to_le_bytes());
+    bytes.extend_from_slice(words.as_flattened());
 }
 
 fn positions(root: &mut Root, binary: &mut Binary, geometry: &Geometry) -> Index<Accessor> {
@@ -280,10 +281,13 @@ fn indices(root: &mut Root, binary: &mut Binary, geometry: &Geometry) -> Vec<Ind
     let mesh = &geometry.mesh;
     let width = index_width(mesh.vertices.len());
     let start = binary.start();
-    for vertex in mesh.triangles.iter().flatten() {
-        match u16::try_from(vertex.0) {
-            Ok(short) if width == 2 => binary.bytes.extend_from_slice(&short.to_le_bytes()),
-            _ => binary.bytes.extend_from_slice(&vertex.0.to_le_bytes()),
+    for triangle in &mesh.triangles {
+        if width == 2 {
+            let words = triangle.map(|vertex| (vertex.0 as u16).to_le_bytes());
+            binary.bytes.extend_from_slice(words.as_flattened());
+        } else {
+            let words = triangle.map(|vertex| vertex.0.to_le_bytes());
+            binary.bytes.extend_from_slice(words.as_flattened());
         }
     }
     let view = binary.view(root, start, Some(Target::ElementArrayBuffer));

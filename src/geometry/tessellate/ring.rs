@@ -58,6 +58,15 @@ pub(super) fn stitch(lower: &Row, upper: &Row, triangles: &mut Vec<[VertexIndex;
 }
 
 fn zip(lower: &Row, upper: &Row, triangles: &mut Vec<[VertexIndex; 3]>) {
+    if lower.steps == upper.steps {
+        for k in 0..lower.steps {
+            let (left, right) =
+                ((lower.vertex(k), upper.vertex(k)), (lower.vertex(k + 1), upper.vertex(k + 1)));
+            triangles.push([left.0, right.0, left.1]);
+            triangles.push([right.0, right.1, left.1]);
+        }
+        return;
+    }
     // Angles are counted in units of a turn / (lower steps * upper steps), so that all is exact.
     let (below, above) = (u64::from(upper.steps), u64::from(lower.steps));
     let (mut i, mut j) = (0, 0);
