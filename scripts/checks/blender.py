@@ -57,7 +57,7 @@ def shape(data: bpy.types.Mesh) -> dict[str, Any]:
     facts: dict[str, Any] = {"vertices": len(mesh.verts), "proper-triangles": len(mesh.faces)}
     facts["bounds"] = box(vertex.co for vertex in mesh.verts)
     weld(mesh)
-    facts["area"] = math.fsum(face.calc_area() for face in mesh.faces)
+    facts["proper-area"] = math.fsum(face.calc_area() for face in mesh.faces)
     facts["closed-volume"] = mesh.calc_volume(signed=True)
     facts["proper-boundary-edges"] = sum(edge.is_boundary for edge in mesh.edges)
     facts["proper-edge-manifold"] = all(edge.is_manifold and edge.is_contiguous for edge in mesh.edges)

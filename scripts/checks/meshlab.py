@@ -44,7 +44,6 @@ def shape(mesh: Mesh) -> dict[str, Any]:
         "boundary-edges": int(topology["boundary_edges"]),
         "components": int(topology["connected_components_number"]),
         "euler": int(topology["vertices_number"] - topology["edges_number"] + topology["faces_number"]),
-        "crowded-edges": int(topology["non_two_manifold_edges"]),
         "self-intersections": layers.current_mesh().selected_face_number(),
     }
     two_manifold = bool(topology["is_mesh_two_manifold"])
@@ -52,10 +51,10 @@ def shape(mesh: Mesh) -> dict[str, Any]:
     if two_manifold:
         facts["boundary-loops"] = int(topology["number_holes"])
     if two_manifold and facts["boundary-edges"] == 0:
-        facts["volume"] = float(geometry["mesh_volume"])
+        facts["closed-volume"] = float(geometry["mesh_volume"])
         facts["solid-centroid"] = geometry["center_of_mass"].tolist()
         facts["solid-inertia"] = geometry["inertia_tensor"].tolist()
-        facts["genus"] = int(topology["genus"])
+        facts["manifold-genus"] = int(topology["genus"])
     return facts
 
 

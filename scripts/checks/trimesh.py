@@ -46,8 +46,10 @@ def shape(raw: trimesh.Trimesh) -> dict[str, Any]:
         "boundary-edges": len(trimesh.grouping.group_rows(mesh.edges_sorted, require_count=1)),
     }
     uses = np.unique(mesh.edges_sorted, axis=0, return_counts=True)[1]
-    if uses.max(initial=0) <= 2:  # trimesh joins no faces across edges of more
-        facts["components"] = int(mesh.body_count)
+    facts["crowded-edges"] = int((uses > 2).sum())
+    if not facts["crowded-edges"]:  # trimesh joins no faces across such edges
+        labels = trimesh.graph.connected_component_labels(mesh.face_adjacency, node_count=len(mesh.faces))
+        facts["components"] = len(np.unique(labels))
     solid = trimesh.triangles.mass_properties(mesh.triangles)
     facts["closed-volume"] = float(solid["volume"])
     facts["solid-centroid"] = solid["center_mass"].tolist()

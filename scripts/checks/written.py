@@ -83,6 +83,7 @@ def shape(mesh: Mesh) -> dict[str, Any]:
         "crowded-edges": edges.crowded,
         "misoriented-edges": edges.misoriented,
         "degenerate-triangles": degenerate(points, triangles),
+        "repeated-triangles": len(triangles) - len(np.unique(np.sort(triangles, axis=1), axis=0)),
         "largest-normal-error": max(normal_error(p) for p in mesh.primitives),
         "unused-vertices": sum(unused(p) for p in mesh.primitives),
         "attributes": sorted({name for p in mesh.primitives for name in p.attributes}),

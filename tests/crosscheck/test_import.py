@@ -38,8 +38,8 @@ NO_FACE = {
     "obj/assimp_point_cloud.obj", "obj/face_in_group_name.obj", "obj/obj_empty.obj", "obj/obj_points.obj",
     "stl/stl_empty_ascii.stl",
 }  # fmt: skip
-# Corners that name a vertex, a normal or a texture coordinate beyond the last one.
-BROKEN = {"obj/bad/malformed.obj", "obj/cubevt.obj", "obj/face_in_group_name_mid_file.obj"}
+# Corners that name a vertex beyond the last one.
+BROKEN = {"obj/bad/malformed.obj"}
 # The distance within which the facts count points of an STL file as one.
 MERGED = "weld = 1e-8\n"
 # All triangles of this file have no area.

@@ -19,6 +19,16 @@ if TYPE_CHECKING:
     from kiln import Kiln
 
 SPECS = sorted(path for path in (ROOT / "specs").rglob("*.toml"))
+WRONG = [
+    "[shape.s.box]\nsizes = [1, 1, 1]\n",
+    "[shape.s.box]\nsize = 'big'\n",
+    "[shape.s.sphere]\nradius = [1]\n",
+    "[shape.s.revolve]\nprofile = 3\n",
+    "[shapes.s.box]\nsize = [1, 1, 1]\n",
+    "unit = 'mile'\n",
+    "[material.m]\nmetallic = 'very'\n",
+    "[curve.c.natural-spline]\npoints = 'many'\n",
+]
 TOMBI = Path(sys.executable).with_name("tombi")
 
 
@@ -42,19 +52,7 @@ def test_gallery_spec_holds(validator: Draft202012Validator, path: Path) -> None
     assert problems(validator, tomllib.loads(path.read_text(encoding="utf-8"))) == []
 
 
-@pytest.mark.parametrize(
-    "spec",
-    [
-        "[shape.s.box]\nsizes = [1, 1, 1]\n",
-        "[shape.s.box]\nsize = 'big'\n",
-        "[shape.s.sphere]\nradius = [1]\n",
-        "[shape.s.revolve]\nprofile = 3\n",
-        "[shapes.s.box]\nsize = [1, 1, 1]\n",
-        "unit = 'mile'\n",
-        "[material.m]\nmetallic = 'very'\n",
-        "[curve.c.natural-spline]\npoints = 'many'\n",
-    ],
-)
+@pytest.mark.parametrize("spec", WRONG)
 def test_wrong_spec_does_not_hold(validator: Draft202012Validator, kiln: Kiln, spec: str) -> None:
     assert problems(validator, tomllib.loads(spec)) != []
     kiln.write(spec)
@@ -62,22 +60,24 @@ def test_wrong_spec_does_not_hold(validator: Draft202012Validator, kiln: Kiln, s
 
 
 def test_tombi_accepts_the_gallery_and_refuses_a_wrong_spec(kiln: Kiln) -> None:
-    """The editor's checker, offline, with the schema named in its own configuration."""
+    """The editors' checker, offline, with the schema named in its own configuration."""
     (kiln.folder / "schema.json").write_text(kiln.run("schema").stdout, encoding="utf-8")
-    (kiln.folder / "tombi.toml").write_text(
-        '[[schemas]]\npath = "schema.json"\ninclude = ["*.toml"]\n[schema]\nenabled = true\n',
-        encoding="utf-8",
-    )
+    configuration = '[[schemas]]\npath = "schema.json"\ninclude = ["specs/*.toml"]\n'
+    (kiln.folder / "tombi.toml").write_text(configuration, encoding="utf-8")
+    folder = kiln.folder / "specs"
+    folder.mkdir()
+    (folder / "right.toml").write_text("[shape.s.box]\nsize = [1, 1, 1]\n", encoding="utf-8")
     for path in SPECS:
-        shutil.copy(path, kiln.folder / path.name)
-    good = tombi(kiln.folder, *[path.name for path in SPECS])
+        shutil.copy(path, folder / path.name)
+    good = tombi(kiln.folder, *[f"specs/{path.name}" for path in sorted(folder.iterdir())])
     assert good.returncode == 0, good.stdout + good.stderr
-    kiln.write("[shape.s.box]\nsizes = [1, 1, 1]\n", "wrong")
-    wrong = tombi(kiln.folder, "wrong.toml")
-    assert wrong.returncode != 0
-    assert "sizes" in wrong.stdout + wrong.stderr
+    for number, spec in enumerate(WRONG):
+        (folder / f"wrong-{number}.toml").write_text(spec, encoding="utf-8")
+        wrong = tombi(kiln.folder, f"specs/wrong-{number}.toml")
+        assert wrong.returncode != 0, spec
 
 
 def tombi(folder: Path, *files: str) -> subprocess.CompletedProcess[str]:
+    """Run tombi's linter on files below a folder that holds its configuration."""
     line = [str(TOMBI), "lint", "--offline", *files]
     return subprocess.run(line, cwd=folder, capture_output=True, text=True, timeout=60, check=False)
