@@ -16,15 +16,19 @@
 //! | `geometry::tessellate` | `geometry::number`, `geometry::curve`, `geometry::mesh`, `geometry::surface` |
 //! | `import` | `geometry::number`, `geometry::mesh` |
 //! | `model` | `geometry` |
-//! | `scene` | `geometry::number`, `geometry::mesh` |
+//! | `scene` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `model` |
 //! | `realize` | `geometry`, `model`, `scene` |
 //! | `optimize` | `geometry::number`, `geometry::mesh`, `scene` |
-//! | `gltf` | `geometry::number`, `geometry::mesh`, `scene` |
-//! | `report` | `geometry`, `model`, `scene`, `gltf` |
+//! | `gltf` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `scene` |
+//! | `report` | `geometry`, `model`, `scene`, `realize`, `gltf` |
 //! | `language` | `geometry::number` |
 //! | `build` | `geometry`, `import`, `language`, `model` |
 //! | `compile` | everything but `cli` |
 //! | `cli` | everything |
+//!
+//! Rows stand in the order of the direction: a row names only rows above it. `scene` uses of `model` the
+//! materials, which are the same in both, and of `geometry::tessellate` the deviation; `optimize` and `gltf`
+//! see neither `model` nor `realize`.
 
 pub mod build;
 #[cfg(feature = "cli")]
