@@ -300,8 +300,8 @@ fn blank(text: &str) -> String {
             quoted(rest)
         } else if rest.starts_with("'\"'") || rest.starts_with("'{'") || rest.starts_with("'}'") {
             3
-        } else if rest.starts_with("'\\") {
-            rest[2..].find('\'').map_or(rest.len(), |end| end + 3)
+        } else if let Some(escaped) = rest.strip_prefix("'\\") {
+            escaped.find('\'').map_or(rest.len(), |end| end + 3)
         } else {
             0
         };
@@ -363,8 +363,11 @@ fn block(code: &str) -> usize {
 #[test]
 fn files_of_tests_are_declared_as_such() {
     let all = sources();
-    let folders: BTreeSet<String> =
-        all.iter().filter(|source| source.test).map(|source| source.module[..source.module.len() - 1].join("::")).collect();
+    let folders: BTreeSet<String> = all
+        .iter()
+        .filter(|source| source.test)
+        .map(|source| source.module[..source.module.len() - 1].join("::"))
+        .collect();
     assert!(!folders.is_empty());
     for folder in folders {
         let parent = all.iter().find(|source| source.module.join("::") == folder).expect("it has a parent");

@@ -3,6 +3,7 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::Builder;
+use crate::geometry::mesh;
 use crate::import::{self, ImportOptions, Imported, MaterialLook};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::{FileError, Span, join};
@@ -181,7 +182,7 @@ impl Builder<'_> {
             alpha: if opacity < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque },
             double_sided: false,
         });
-        Some(MaterialHandle(self.model.materials.len() as u32 - 1))
+        Some(MaterialHandle(mesh::index(self.model.materials.len()) - 1))
     }
 }
 

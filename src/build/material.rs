@@ -1,6 +1,7 @@
 //! Materials and the images they show.
 
 use super::Builder;
+use crate::geometry::mesh;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::spec::{self, Alpha, Sp};
 use crate::model::{
@@ -18,7 +19,7 @@ impl Builder<'_> {
         let built = self.build_material(name, &definition.value);
         let handle = built.map(|material| {
             self.model.materials.push(material);
-            MaterialHandle(self.model.materials.len() as u32 - 1)
+            MaterialHandle(mesh::index(self.model.materials.len()) - 1)
         });
         self.materials.insert(name.to_owned(), handle);
         handle
@@ -81,7 +82,7 @@ impl Builder<'_> {
         let image = self.load_image(texture);
         let handle = image.map(|image| {
             self.model.images.push(image);
-            ImageHandle(self.model.images.len() as u32 - 1)
+            ImageHandle(mesh::index(self.model.images.len()) - 1)
         });
         self.images.insert(path, handle);
         handle

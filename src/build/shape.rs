@@ -4,6 +4,7 @@ use glam::{DAffine3, DMat3, DVec2, DVec3};
 
 use super::{Builder, placement};
 use crate::geometry::curve::{AnyCurve, Curve as _, EllipseArc, Polyline, Side};
+use crate::geometry::mesh;
 use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::tessellate::{Extrusion, Revolution, Sweep};
 use crate::language::diagnostic::{Code, Diagnostic};
@@ -36,10 +37,10 @@ impl Builder<'_> {
         let options = self.options(&definition.options);
         let (recipe, center) = self.recipe(name, &definition.kind, span)?;
         let mut options = options?;
-        options.placement = options.placement * DAffine3::from_translation(center);
+        options.placement *= DAffine3::from_translation(center);
         self.model.shapes.push(Shape { name: name.to_owned(), recipe, options });
         self.places.push(span);
-        Some(ShapeHandle(self.model.shapes.len() as u32 - 1))
+        Some(ShapeHandle(mesh::index(self.model.shapes.len()) - 1))
     }
 
     fn options(&mut self, written: &spec::ShapeOptions) -> Option<ShapeOptions> {

@@ -10,6 +10,8 @@ use gltf::json::validation::Checked;
 use gltf::json::{Index, Root};
 
 use super::buffer::Binary;
+use crate::geometry::mesh;
+use crate::geometry::number::single;
 use crate::scene::{AlphaMode, Filter, ImageKind, Material, Scene, Texture, Wrap};
 
 /// Writes the images; index k of the scene is index k of the file.
@@ -50,10 +52,10 @@ struct Textures {
 
 impl Textures {
     fn material(&mut self, root: &mut Root, material: &Material) -> JsonMaterial {
-        let strength = |value: f64| StrengthFactor(value as f32);
+        let strength = |value: f64| StrengthFactor(single(value));
         JsonMaterial {
             alpha_cutoff: match material.alpha {
-                AlphaMode::Mask { cutoff } => Some(AlphaCutoff(cutoff as f32)),
+                AlphaMode::Mask { cutoff } => Some(AlphaCutoff(single(cutoff))),
                 _ => None,
             },
             alpha_mode: Checked::Valid(match material.alpha {
@@ -64,7 +66,7 @@ impl Textures {
             double_sided: material.double_sided,
             name: Some(material.name.clone()),
             pbr_metallic_roughness: PbrMetallicRoughness {
-                base_color_factor: PbrBaseColorFactor(material.color.map(|part| part as f32)),
+                base_color_factor: PbrBaseColorFactor(material.color.map(single)),
                 base_color_texture: self.info(root, material.color_texture),
                 metallic_factor: strength(material.metallic),
                 roughness_factor: strength(material.roughness),
@@ -74,7 +76,7 @@ impl Textures {
             },
             normal_texture: material.normal_texture.map(|(texture, scale)| NormalTexture {
                 index: self.texture(root, texture),
-                scale: scale as f32,
+                scale: single(scale),
                 tex_coord: 0,
                 extensions: None,
                 extras: None,
@@ -87,7 +89,7 @@ impl Textures {
                 extras: None,
             }),
             emissive_texture: self.info(root, material.emissive_texture),
-            emissive_factor: EmissiveFactor(material.emissive.map(|part| part as f32)),
+            emissive_factor: EmissiveFactor(material.emissive.map(single)),
             extensions: None,
             extras: None,
         }
@@ -104,7 +106,7 @@ impl Textures {
 
     fn texture(&mut self, root: &mut Root, texture: Texture) -> Index<JsonTexture> {
         if let Some(known) = self.seen.iter().position(|seen| *seen == texture) {
-            return Index::new(known as u32);
+            return Index::new(mesh::index(known));
         }
         let sampler = self.sampler(root, texture.wrap, texture.filter);
         self.seen.push(texture);
@@ -119,7 +121,7 @@ impl Textures {
 
     fn sampler(&mut self, root: &mut Root, wrap: Wrap, filter: Filter) -> Index<Sampler> {
         if let Some(known) = self.samplers.iter().position(|seen| *seen == (wrap, filter)) {
-            return Index::new(known as u32);
+            return Index::new(mesh::index(known));
         }
         self.samplers.push((wrap, filter));
         let mode = Checked::Valid(match wrap {

@@ -8,6 +8,9 @@ use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Index, Root};
 use thiserror::Error;
 
+use crate::geometry::mesh;
+use crate::geometry::number::size;
+
 /// A file, read.
 #[derive(Clone, Debug)]
 pub struct Read {
@@ -93,26 +96,28 @@ fn geometry(root: &Root, binary: &[u8], mesh: usize) -> Result<Geometry, ReadErr
         }
         let position = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
         let position = position.ok_or_else(|| ReadError::Missing(format!("POSITION of mesh {mesh}")))?;
-        let known =
-            bases.iter().find(|(accessor, _)| *accessor == position.value() as u32).map(|(_, base)| *base);
+        let known = bases
+            .iter()
+            .find(|(accessor, _)| *accessor == mesh::index(position.value()))
+            .map(|(_, base)| *base);
         let base = match known {
             Some(base) => base,
             None => {
-                let base = all.positions.len() as u32;
+                let base = mesh::index(all.positions.len());
                 read_positions(root, binary, *position, &mut all.positions)?;
-                bases.push((position.value() as u32, base));
+                bases.push((mesh::index(position.value()), base));
                 base
             }
         };
         let before = all.indices.len();
         match primitive.indices {
             Some(indices) => read_indices(root, binary, indices, base, &mut all.indices)?,
-            None => all.indices.extend(base..all.positions.len() as u32),
+            None => all.indices.extend(base..mesh::index(all.positions.len())),
         }
         let material = primitive.material.map(|material| material.value());
         all.parts.push(Part { triangles: (all.indices.len() - before) / 3, material });
     }
-    let count = all.positions.len() as u32;
+    let count = mesh::index(all.positions.len());
     match all.indices.iter().find(|index| **index >= count) {
         Some(index) => Err(ReadError::Vertex(mesh, *index)),
         None => Ok(all),
@@ -138,20 +143,20 @@ fn elements<'a>(
     if view.buffer.value() != 0 || root.buffers.first().is_none_or(|buffer| buffer.uri.is_some()) {
         return Err(ReadError::Unsupported("data outside the file".to_owned()));
     }
-    let size = |value: Option<gltf::json::validation::USize64>| value.map_or(0, |value| value.0);
-    let start = size(view.byte_offset).saturating_add(size(accessor.byte_offset));
+    let number = |value: Option<gltf::json::validation::USize64>| value.map_or(0, |value| value.0);
+    let start = number(view.byte_offset).saturating_add(number(accessor.byte_offset));
     let stride = view.byte_stride.map_or(width, |stride| stride.0);
     let count = usize::try_from(accessor.count.0).map_err(|_| ReadError::Range(at))?;
     let reach = match count {
         0 => 0,
         _ => ((count - 1) as u64).saturating_mul(stride as u64).saturating_add(width as u64),
     };
-    let view_end = size(view.byte_offset).saturating_add(view.byte_length.0);
+    let view_end = number(view.byte_offset).saturating_add(view.byte_length.0);
     let end = start.saturating_add(reach);
     if end > view_end || end > binary.len() as u64 {
         return Err(ReadError::Range(at));
     }
-    Ok((&binary[start as usize..end as usize], stride, count))
+    Ok((&binary[size(start)..size(end)], stride, count))
 }
 
 fn kind(root: &Root, index: Index<Accessor>) -> Option<(ComponentType, Type)> {

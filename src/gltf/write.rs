@@ -12,7 +12,9 @@ use thiserror::Error;
 
 use super::buffer::{Binary, Elements, accessor};
 use super::material;
+use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
+use crate::geometry::number::size;
 use crate::geometry::tessellate::Deviation;
 use crate::scene::{Checked, Geometry};
 
@@ -152,7 +154,7 @@ impl Writer {
     fn mesh(&mut self, checked: Checked<'_>, mesh: &crate::scene::MeshUse, shared: &Shared) {
         let scene = checked.scene();
         let runs = &scene.geometries[mesh.geometry].mesh.runs;
-        let primitive = |(run, indices): (&crate::geometry::mesh::Run, &Index<Accessor>)| {
+        let primitive = |(run, indices): (&mesh::Run, &Index<Accessor>)| {
             let material = mesh.materials[run.origin as usize];
             let worn = material.map(|index| &scene.materials[index]);
             let bumps = worn.is_some_and(|material| material.normal_texture.is_some());
@@ -170,7 +172,7 @@ impl Writer {
                 extensions: None,
                 extras: None,
                 indices: Some(*indices),
-                material: material.map(|index| Index::new(index as u32)),
+                material: material.map(|index| Index::new(mesh::index(index))),
                 mode: Valid::Valid(Mode::Triangles),
                 targets: None,
             }
@@ -189,7 +191,7 @@ impl Writer {
         let scene = checked.scene();
         let children = |parent: Option<usize>| -> Vec<Index<Node>> {
             let of = |(index, node): (usize, &crate::scene::Node)| {
-                (node.parent == parent).then(|| Index::new(index as u32))
+                (node.parent == parent).then(|| Index::new(mesh::index(index)))
             };
             scene.nodes.iter().enumerate().filter_map(of).collect()
         };
@@ -204,7 +206,7 @@ impl Writer {
                 extensions: None,
                 extras: None,
                 matrix: None,
-                mesh: node.mesh.map(|mesh| Index::new(mesh as u32)),
+                mesh: node.mesh.map(|mesh| Index::new(mesh::index(mesh))),
                 name: Some(node.name.clone()),
                 rotation: (node.rotation != glam::DQuat::IDENTITY)
                     .then(|| UnitQuaternion(node.rotation.as_quat().to_array())),
@@ -242,7 +244,7 @@ impl Writer {
         let mut head = Vec::with_capacity(json.len() + 28);
         head.extend_from_slice(b"glTF");
         head.extend_from_slice(&word(2));
-        head.extend_from_slice(&word(length as usize));
+        head.extend_from_slice(&word(size(length)));
         head.extend_from_slice(&word(json.len()));
         head.extend_from_slice(b"JSON");
         head.extend_from_slice(&json);
@@ -283,7 +285,8 @@ fn indices(root: &mut Root, binary: &mut Binary, geometry: &Geometry) -> Vec<Ind
     let start = binary.start();
     for triangle in &mesh.triangles {
         if width == 2 {
-            let words = triangle.map(|vertex| (vertex.0 as u16).to_le_bytes());
+            // The two low bytes are all: the greatest vertex is below 0xFFFF.
+            let words = triangle.map(|vertex| vertex.0.to_le_bytes()).map(|[low, high, ..]| [low, high]);
             binary.bytes.extend_from_slice(words.as_flattened());
         } else {
             let words = triangle.map(|vertex| vertex.0.to_le_bytes());

@@ -1,5 +1,6 @@
 //! Leaves out vertices and points that no triangle uses, and triangles that use one vertex twice.
 
+use crate::geometry::mesh;
 use crate::geometry::mesh::{Mesh, PointIndex, VertexIndex};
 
 /// Renumbers what is used, in the order it stands. O(size of the mesh); nothing moves when all is used.
@@ -54,11 +55,11 @@ fn drop_collapsed(mesh: &mut Mesh) {
     let mut start = 0;
     let mut runs = Vec::with_capacity(mesh.runs.len());
     for run in &mesh.runs {
-        kept_before += keep[start..run.end as usize].iter().filter(|keep| **keep).count() as u32;
+        kept_before += mesh::index(keep[start..run.end as usize].iter().filter(|keep| **keep).count());
         start = run.end as usize;
-        let empty = runs.last().map_or(0, |last: &crate::geometry::mesh::Run| last.end) == kept_before;
+        let empty = runs.last().map_or(0, |last: &mesh::Run| last.end) == kept_before;
         if !empty {
-            runs.push(crate::geometry::mesh::Run { origin: run.origin, end: kept_before });
+            runs.push(mesh::Run { origin: run.origin, end: kept_before });
         }
     }
     mesh.runs = runs;

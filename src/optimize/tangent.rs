@@ -9,6 +9,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 use meshopt::TangentOptions;
 
+use crate::geometry::mesh;
 use crate::geometry::mesh::{Mesh, VertexIndex};
 use crate::scene::{Geometry, Scene};
 
@@ -43,7 +44,7 @@ fn add_tangents(geometry: &mut Geometry) {
                 let twin = *split.entry(key).or_insert_with(|| {
                     mesh.vertices.push(mesh.vertices[vertex.0 as usize]);
                     tangents.push(Some(tangent));
-                    VertexIndex(mesh.vertices.len() as u32 - 1)
+                    VertexIndex(mesh::index(mesh.vertices.len()) - 1)
                 });
                 mesh.triangles[corner / 3][corner % 3] = twin;
             }
@@ -61,7 +62,7 @@ fn corner_tangents(mesh: &Mesh) -> Vec<[f32; 4]> {
     let normals: Vec<[f32; 3]> = mesh.vertices.iter().map(|vertex| single(vertex.normal)).collect();
     let uvs: Vec<[f32; 2]> = mesh.vertices.iter().map(|vertex| vertex.uv.as_vec2().to_array()).collect();
     let indices: Vec<u32> = mesh.triangles.iter().flatten().map(|vertex| vertex.0).collect();
-    let count = positions.len() as u32;
+    let count = mesh::index(positions.len());
     assert!(indices.iter().all(|index| *index < count), "a mesh's indices are in range");
     let made =
         meshopt::generate_tangents(Some(&indices), &positions, &normals, &uvs, TangentOptions::Compatible);

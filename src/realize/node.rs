@@ -5,6 +5,7 @@ use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 use super::shape::{self, Made, Maker};
 use super::{Options, RealizeError, Realized};
+use crate::geometry::mesh;
 use crate::model::{Frame, MaterialHandle, Model, ShapeHandle};
 use crate::scene::{Geometry, MeshUse, Node, Scene};
 
@@ -101,10 +102,10 @@ fn used_materials(shown: &[Shown], shapes: &[ShapeHandle], made: &[Made]) -> Vec
     for (shape, material) in shown {
         let geometry = shapes.iter().position(|known| known == shape).unwrap_or(0);
         for own in &made[geometry].materials {
-            if let Some(handle) = material.or(*own) {
-                if !used.contains(&handle) {
-                    used.push(handle);
-                }
+            if let Some(handle) = material.or(*own)
+                && !used.contains(&handle)
+            {
+                used.push(handle);
             }
         }
     }
@@ -119,7 +120,7 @@ fn keep_used_images(model: &Model, scene: &mut Scene) {
             kept.push(image.0);
             kept.len() - 1
         });
-        image.0 = place as u32;
+        image.0 = mesh::index(place);
     };
     for material in &mut scene.materials {
         let plain = [

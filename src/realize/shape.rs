@@ -4,6 +4,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::source::source_count;
 use super::{Options, RealizeError};
+use crate::geometry::mesh;
 use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
 use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex};
 use crate::geometry::tessellate::{
@@ -133,7 +134,7 @@ impl<'a> Maker<'a> {
     fn polygons(
         &self,
         shape: &Shape,
-        mesh: &crate::geometry::mesh::PolygonMesh,
+        mesh: &mesh::PolygonMesh,
         materials: &[Option<MaterialHandle>],
     ) -> Result<Made, RealizeError> {
         let shading = match shape.options.smoothing {
@@ -218,7 +219,7 @@ impl<'a> Maker<'a> {
 }
 
 fn join(whole: &mut Made, part: &Made) {
-    let offset = whole.materials.len() as u32;
+    let offset = mesh::index(whole.materials.len());
     whole.mesh.append(&part.mesh, offset);
     whole.materials.extend(&part.materials);
     whole.deviation = whole.deviation.union(part.deviation);
@@ -271,7 +272,7 @@ fn flatten(mut made: Made) -> Made {
         let [a, b, c] = corners.map(|vertex| mesh.points[vertex.point.0 as usize]);
         let normal = (b - a).cross(c - a).normalize_or(corners[0].normal);
         for (slot, vertex) in triangle.iter_mut().zip(corners) {
-            *slot = VertexIndex(vertices.len() as u32);
+            *slot = VertexIndex(mesh::index(vertices.len()));
             vertices.push(Vertex { normal, ..vertex });
         }
     }
@@ -348,7 +349,7 @@ pub(super) fn group_by_material(made: Made) -> Made {
             }
             start = run.end;
         }
-        runs.push(Run { origin: origin as u32, end: triangles.len() as u32 });
+        runs.push(Run { origin: mesh::index(origin), end: mesh::index(triangles.len()) });
     }
     Made { mesh: Mesh { triangles, runs, ..made.mesh }, materials: order, ..made }
 }

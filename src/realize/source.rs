@@ -4,6 +4,7 @@ use glam::{DAffine3, DVec3};
 
 use super::shape::frame_map;
 use crate::geometry::curve::{AnyCurve, Curve as _, Side, distance_within};
+use crate::geometry::mesh;
 use crate::geometry::number::{Bounds, hypot};
 use crate::geometry::surface::SweptSurface;
 use crate::geometry::tessellate::{Density, discretize};
@@ -14,7 +15,7 @@ pub(super) fn source_count(recipe: &Recipe) -> u32 {
     match recipe {
         Recipe::Cuboid { .. } => 6,
         Recipe::Revolution(_) | Recipe::Sweep(_) => 3,
-        Recipe::Extrusion(extrusion) => extrusion.outlines.len() as u32 + 2,
+        Recipe::Extrusion(extrusion) => mesh::index(extrusion.outlines.len()) + 2,
         Recipe::Polygons { .. } => 1,
         Recipe::Assembly(_) => 0,
     }

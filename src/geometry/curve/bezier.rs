@@ -47,7 +47,7 @@ impl BezierSpline {
     /// # Errors
     /// When the count of points is not a multiple of the degree plus one.
     pub fn new(degree: usize, points: Vec<DVec3>) -> Result<Self, BezierError> {
-        let pieces = if degree == 0 { 0 } else { points.len().saturating_sub(1) / degree };
+        let pieces = points.len().saturating_sub(1).checked_div(degree).unwrap_or(0);
         let knots = (0..=pieces).map(|knot| knot as f64).collect();
         Self::with_knots(degree, points, knots)
     }
@@ -61,7 +61,7 @@ impl BezierSpline {
             return Err(BezierError::Degree);
         }
         let count = points.len();
-        if count < degree + 1 || (count - 1) % degree != 0 {
+        if count < degree + 1 || !(count - 1).is_multiple_of(degree) {
             return Err(BezierError::Count { points: count, degree });
         }
         if knots.len() != (count - 1) / degree + 1 || knots.windows(2).any(|pair| pair[0] >= pair[1]) {

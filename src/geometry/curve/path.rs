@@ -3,10 +3,11 @@
 use glam::DVec3;
 
 use super::{AnyCurve, Curve, Domain, Jet, Side};
+use crate::geometry::number::floor_index;
 
 /// How well two curves join.
 ///
-/// Source: B. Barsky, T. DeRose, Geometric continuity of parametric curves, IEEE CG&A 10 (1990).
+/// Source: B. Barsky, T. `DeRose`, Geometric continuity of parametric curves, IEEE CG&A 10 (1990).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Continuity {
     /// The ends do not meet.
@@ -98,7 +99,7 @@ impl Path {
             index -= 1.0;
         }
         let index = index.min(last as f64);
-        (index as usize, t - index)
+        (floor_index(index), t - index)
     }
 }
 

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::{Curve, Domain, Jet, Side};
+use crate::geometry::number::floor_index;
 
 /// Straight segments; segment k covers parameters k to k + 1. A closed one returns to its first point.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,7 +52,8 @@ impl Curve for Polyline {
             segment -= 1.0;
         }
         let segment = segment.min(last as f64);
-        let (start, end) = (self.points[segment as usize], self.points[segment as usize + 1]);
+        let at = floor_index(segment);
+        let (start, end) = (self.points[at], self.points[at + 1]);
         let local = t - segment;
         Jet { point: start * (1.0 - local) + end * local, first: end - start, second: DVec3::ZERO }
     }

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::TessellateError;
+use crate::geometry::mesh;
 use crate::geometry::mesh::triangulate::triangulate;
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Vertex, VertexIndex};
 
@@ -34,7 +35,7 @@ pub(super) fn add_cap(
     let rings: Vec<&[DVec2]> = loops.iter().map(|ring| ring.place.as_slice()).collect();
     let triangles =
         triangulate(&rings).map_err(|error| TessellateError::Cap { reason: error.to_string() })?;
-    let base = mesh.vertices.len() as u32;
+    let base = mesh::index(mesh.vertices.len());
     let (low, size) = extent(&loops[0].place);
     for (place, point) in loops.iter().flat_map(|ring| ring.place.iter().zip(&ring.points)) {
         let part = (*place - low) / size;

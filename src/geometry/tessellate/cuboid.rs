@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{Deviation, Tessellation};
+use crate::geometry::mesh;
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
 
 /// The box of `size` about `center`: 8 points, 6 faces with their own vertices, each face the whole texture.
@@ -15,7 +16,7 @@ pub fn cuboid(size: DVec3, center: DVec3, uv: bool) -> Tessellation {
     }
     for (face, (normal, right)) in FACES.into_iter().enumerate() {
         let up = normal.cross(right);
-        let base = mesh.vertices.len() as u32;
+        let base = mesh::index(mesh.vertices.len());
         for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
             let corner = normal + right * x + up * y;
             let bit = |value: f64, bit: u32| u32::from(value > 0.0) << bit;
@@ -25,7 +26,7 @@ pub fn cuboid(size: DVec3, center: DVec3, uv: bool) -> Tessellation {
                 point: PointIndex(point),
                 normal,
                 uv: if uv { place } else { DVec2::ZERO },
-                anchor: Anchor { source: face as u32, u: place.x, v: place.y },
+                anchor: Anchor { source: mesh::index(face), u: place.x, v: place.y },
             });
         }
         let corner = |k: u32| VertexIndex(base + k);

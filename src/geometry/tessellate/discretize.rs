@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::TessellateError;
 use crate::geometry::curve::{Curve, Side, length_between};
-use crate::geometry::number::cos_degrees;
+use crate::geometry::number::{cos_degrees, floor_count};
 
 /// A point of a curve that a mesh will use.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +74,7 @@ fn spread(stops: &[f64], count: u32) -> Vec<f64> {
     let mut parameters = vec![stops[0]];
     let mut used = 0;
     for pair in stops.windows(2) {
-        let reached = ((pair[1] - stops[0]) / span * f64::from(count)).round() as u32;
+        let reached = floor_count(((pair[1] - stops[0]) / span * f64::from(count)).round());
         let steps = reached.saturating_sub(used).max(1);
         used += steps;
         let at = |k: u32| {

@@ -10,6 +10,7 @@ use super::discretize::{Density, Station, arc_lengths, discretize};
 use super::ring::{Row, RowKind, stitch};
 use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessellation};
 use crate::geometry::curve::AnyCurve;
+use crate::geometry::mesh;
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex};
 use crate::geometry::number::atan2;
 
@@ -55,19 +56,20 @@ pub fn extrude(shape: &Extrusion, detail: &Detail) -> Result<Tessellation, Tesse
     let mut mesh = Mesh::default();
     let mut ends = (Vec::new(), Vec::new());
     for (source, outline) in outlines.iter().enumerate() {
-        let points = wall(&mut mesh, shape, outline, &WallDetail { layers, source: source as u32, detail });
+        let points =
+            wall(&mut mesh, shape, outline, &WallDetail { layers, source: mesh::index(source), detail });
         let place: Vec<DVec2> = flat(&outline.stations);
         ends.0.push(CapLoop { place: place.clone(), points: points.0 });
         ends.1.push(CapLoop { place, points: points.1 });
     }
     if shape.caps {
-        let source = outlines.len() as u32;
+        let source = mesh::index(outlines.len());
         let (down, up) =
             (Facing { normal: DVec3::NEG_Z, mirrored: true }, Facing { normal: DVec3::Z, mirrored: false });
         add_cap(&mut mesh, &ends.0, down, source, detail.uv)?;
         add_cap(&mut mesh, &ends.1, up, source + 1, detail.uv)?;
     }
-    mesh.runs = vec![Run { origin: 0, end: mesh.triangles.len() as u32 }];
+    mesh.runs = vec![Run { origin: 0, end: mesh::index(mesh.triangles.len()) }];
     let stations = outlines.iter().flat_map(|outline| &outline.stations);
     let bound = stations.map(|station| station.deviation).fold(0.0, f64::max);
     let evidence = if bound == 0.0 { Evidence::Exact } else { Evidence::Proved };
@@ -121,8 +123,8 @@ fn wall(
     outline: &Outline,
     wall: &WallDetail<'_>,
 ) -> (Vec<PointIndex>, Vec<PointIndex>) {
-    let count = outline.stations.len() as u32 - 1;
-    let base = mesh.points.len() as u32;
+    let count = mesh::index(outline.stations.len()) - 1;
+    let base = mesh::index(mesh.points.len());
     let height = |layer: u32| f64::from(layer) / f64::from(wall.layers);
     for layer in 0..=wall.layers {
         let z = shape.bottom + shape.height * height(layer);
@@ -131,7 +133,7 @@ fn wall(
     for run in smooth_runs(outline, wall.detail) {
         let mut below: Option<Row> = None;
         for layer in 0..=wall.layers {
-            let row = Row { base: mesh.vertices.len() as u32, steps: run.steps(), kind: run.kind };
+            let row = Row { base: mesh::index(mesh.vertices.len()), steps: run.steps(), kind: run.kind };
             for k in run.from..=run.to - u32::from(run.kind == RowKind::Round) {
                 let station = &outline.stations[k as usize];
                 let part = height(layer);
@@ -184,7 +186,7 @@ impl SmoothRun {
 
 /// Splits a closed outline at its hard edges, and without texture coordinates nowhere else.
 fn smooth_runs(outline: &Outline, detail: &Detail) -> Vec<SmoothRun> {
-    let last = outline.stations.len() as u32 - 1;
+    let last = mesh::index(outline.stations.len()) - 1;
     let hard = |k: u32| {
         let station = &outline.stations[k as usize];
         let sine = station.before.cross(station.after).length();

@@ -5,9 +5,9 @@
 //!
 //! # The proved bound
 //! Distance from the cones to the surface is that of the profile's chords to the profile, e1. On a cone,
-//! a triangle's point at weights w_k over corners of radius r_k and angle t_k lies inside the circle of its
-//! height by at most half the sum of w_k r_k (t_k - t)^2 for any t, since cos x >= 1 - x^2/2. Minimized over
-//! t the worst pair of corners decides: r_i r_j (t_i - t_j)^2 / (2 (sqrt r_i + sqrt r_j)^2). Times the
+//! a triangle's point at weights `w_k` over corners of radius `r_k` and angle `t_k` lies inside the circle of its
+//! height by at most half the sum of `w_k` `r_k` (`t_k` - t)^2 for any t, since cos x >= 1 - x^2/2. Minimized over
+//! t the worst pair of corners decides: `r_i` `r_j` (`t_i` - `t_j)^2` / (2 (sqrt `r_i` + sqrt `r_j)^2`). Times the
 //! cosine of the cone's slope this is the distance e2, and e1 + e2 bounds the whole. With steps
 //! sqrt(8 e2 / (r cos)) on each ring, edges across a band that span at most the mean of the two steps obey
 //! the same bound, which is what the stitching keeps.
@@ -22,8 +22,9 @@ use super::discretize::{Density, Station, arc_lengths, discretize};
 use super::ring::{Row, RowKind, count, stitch};
 use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessellation};
 use crate::geometry::curve::{AnyCurve, Curve};
+use crate::geometry::mesh;
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex};
-use crate::geometry::number::{cos_degrees, sin_cos_degrees};
+use crate::geometry::number::{cos_degrees, floor_count, sin_cos_degrees, size};
 
 /// A profile turned about the y axis: x of the profile is the radius. Angles in degrees, from +x toward -z.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,7 +65,7 @@ pub fn revolve(shape: &Revolution, detail: &Detail) -> Result<Tessellation, Tess
     builder.rows();
     builder.caps()?;
     let mut mesh = builder.mesh;
-    mesh.runs = vec![Run { origin: 0, end: mesh.triangles.len() as u32 }];
+    mesh.runs = vec![Run { origin: 0, end: mesh::index(mesh.triangles.len()) }];
     Ok(Tessellation { mesh, deviation: plan.deviation() })
 }
 
@@ -158,7 +159,7 @@ impl Plan {
         let least = (self.turn / 90.0).ceil().max(1.0);
         let steps = steps.max(least).min(4e9);
         // A full turn in multiples of four is symmetric, and as wide as the circle itself along x and z.
-        if self.turn == 360.0 { (steps / 4.0).ceil() as u32 * 4 } else { steps as u32 }
+        if self.turn == 360.0 { floor_count((steps / 4.0).ceil()) * 4 } else { floor_count(steps) }
     }
 
     /// The proved bound of what will be made.
@@ -250,9 +251,9 @@ impl<'a> Builder<'a> {
         let mut mesh = Mesh::default();
         let points: u64 = plan.steps.iter().map(|steps| u64::from(*steps) + 1).sum();
         let triangles: u64 = plan.steps.windows(2).map(|pair| count(pair[0], pair[1])).sum();
-        mesh.points.reserve_exact(points as usize);
-        mesh.vertices.reserve_exact(points as usize);
-        mesh.triangles.reserve_exact(triangles as usize);
+        mesh.points.reserve_exact(size(points));
+        mesh.vertices.reserve_exact(size(points));
+        mesh.triangles.reserve_exact(size(triangles));
         Self { plan, shape, detail, mesh, rings: Vec::new(), angles: (0, Vec::new()) }
     }
 
@@ -320,7 +321,7 @@ impl<'a> Builder<'a> {
             self.rings.push(self.rings[0]);
             return;
         }
-        let base = self.mesh.points.len() as u32;
+        let base = mesh::index(self.mesh.points.len());
         let point = self.plan.stations[index].point;
         let steps = self.plan.steps[index];
         if steps == 0 {
@@ -365,7 +366,7 @@ impl<'a> Builder<'a> {
     }
 
     fn row(&mut self, index: usize, normal: DVec2, steps: u32) -> Row {
-        let base = self.mesh.vertices.len() as u32;
+        let base = mesh::index(self.mesh.vertices.len());
         let pole = self.plan.on_axis(index);
         let uv = self.detail.uv;
         let kind = match (pole, self.full()) {
@@ -437,7 +438,7 @@ impl<'a> Builder<'a> {
             let normal = if end == 1 { onward } else { -onward };
             // Seen from the far side, at the last angle, the profile's plane has x to the left.
             let facing = Facing { normal, mirrored: end == 1 };
-            add_cap(&mut self.mesh, &[outline], facing, CAP + end as u32, self.detail.uv)?;
+            add_cap(&mut self.mesh, &[outline], facing, CAP + mesh::index(end), self.detail.uv)?;
         }
         Ok(())
     }

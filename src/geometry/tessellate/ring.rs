@@ -101,7 +101,7 @@ mod tests {
                 let upper = Row { base: 1000, steps: above, kind: RowKind::Open };
                 let mut triangles = Vec::new();
                 stitch(&lower, &upper, &mut triangles);
-                assert_eq!(triangles.len() as u32, below + above);
+                assert_eq!(crate::geometry::mesh::index(triangles.len()), below + above);
                 let angle = |vertex: u32| {
                     if vertex >= 1000 {
                         f64::from(vertex - 1000) / f64::from(above)

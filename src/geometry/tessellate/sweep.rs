@@ -12,6 +12,7 @@ use super::cap::{CapLoop, Facing, add_cap, twice_area};
 use super::discretize::{Density, Station, arc_lengths, discretize};
 use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessellation};
 use crate::geometry::curve::{AnyCurve, Curve, Domain, Jet, Side};
+use crate::geometry::mesh;
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
 use crate::geometry::number::{atan2, ln, pow};
 use crate::geometry::surface::{Section, SweptSurface};
@@ -260,7 +261,7 @@ impl Plan {
             self.cap(&mut mesh, 0, detail)?;
             self.cap(&mut mesh, rows - 1, detail)?;
         }
-        mesh.runs = vec![Run { origin: 0, end: mesh.triangles.len() as u32 }];
+        mesh.runs = vec![Run { origin: 0, end: mesh::index(mesh.triangles.len()) }];
         Ok(Tessellation { mesh, deviation: self.deviation })
     }
 
@@ -274,7 +275,7 @@ impl Plan {
 
     fn point_index(&self, row: usize, column: usize) -> PointIndex {
         let (columns, rows) = (self.point_columns(), self.point_rows());
-        PointIndex((row % rows * columns + column % columns) as u32)
+        PointIndex(mesh::index(row % rows * columns + column % columns))
     }
 
     /// A point of the section at a row, at corners in the bisecting plane.
@@ -307,15 +308,16 @@ impl Plan {
             && self.turn(&self.profile[0]) <= detail.crease_angle;
         let rows = last - first + usize::from(!round_path);
         let columns = right - left + usize::from(!round_profile);
-        let base = mesh.vertices.len() as u32;
+        let base = mesh::index(mesh.vertices.len());
         for row in first..first + rows {
             for column in left..left + columns {
                 let place = ((row, row == first, row == last), (column, column == left, column == right));
                 mesh.vertices.push(self.vertex(place, detail));
             }
         }
-        let at =
-            |row: usize, column: usize| VertexIndex(base + (row % rows * columns + column % columns) as u32);
+        let at = |row: usize, column: usize| {
+            VertexIndex(base + mesh::index(row % rows * columns + column % columns))
+        };
         for row in 0..last - first {
             for column in 0..right - left {
                 let corners =

@@ -204,11 +204,11 @@ fn sweeps_keep_the_laws() {
             for twist in [0.0, 90.0] {
                 for detail in details() {
                     let shape = Sweep { profile: profile.clone(), path: path.clone(), twist, caps: true };
-                    if *path_name == "knot" && twist != 0.0 || *path_name == "frame" && twist != 0.0 {
+                    if twist != 0.0 && matches!(*path_name, "knot" | "frame") {
                         continue;
                     }
                     let coarse = matches!(detail.density, SurfaceDensity::Grid { u: 7, .. });
-                    if coarse && path_name.contains("knot") || coarse && *path_name == "helix" {
+                    if coarse && (path_name.contains("knot") || *path_name == "helix") {
                         continue;
                     }
                     let made = sweep(&shape, &detail).unwrap();
