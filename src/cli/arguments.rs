@@ -126,7 +126,7 @@ pub(crate) struct Sample {
     #[arg(long, value_name = "NAME")]
     pub(crate) shape: Option<String>,
     /// Parameters: T of a curve, U,V of a surface
-    #[arg(long, value_name = "T|U,V", num_args = 1.., allow_hyphen_values = true, conflicts_with = "count")]
+    #[arg(long, value_name = "T|U,V", num_args = 1.., allow_negative_numbers = true, conflicts_with = "count")]
     pub(crate) at: Vec<String>,
     /// This many even steps over the domain
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=100_000_000))]

@@ -75,5 +75,6 @@ fn unit([x, y, z, w]: [f32; 4], normal: [f32; 3]) -> [f32; 4] {
     let tangent = tangent.try_normalize().unwrap_or_else(|| {
         glam::Vec3::from_array(normal).normalize_or(glam::Vec3::Y).any_orthonormal_vector()
     });
-    [tangent.x, tangent.y, tangent.z, if w < 0.0 { -1.0 } else { 1.0 }]
+    // MikkTSpace takes v as growing up the picture, glTF down: the bitangent points up either way.
+    [tangent.x, tangent.y, tangent.z, if w < 0.0 { 1.0 } else { -1.0 }]
 }

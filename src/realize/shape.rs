@@ -7,6 +7,7 @@ use super::{Options, RealizeError};
 use crate::geometry::mesh;
 use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
 use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex};
+use crate::geometry::number::single_rounding;
 use crate::geometry::tessellate::{
     Detail, Deviation, SurfaceDensity, TessellateError, Tessellation, cuboid, extrude, revolve, sweep,
 };
@@ -78,7 +79,7 @@ impl<'a> Maker<'a> {
         let detail = Detail {
             density: match shape.options.density {
                 Some(grid) => SurfaceDensity::Grid { u: grid.u, v: grid.v },
-                None => SurfaceDensity::Tolerance(tolerance / stretch),
+                None => SurfaceDensity::Tolerance(before_rounding(shape, tolerance) / stretch),
             },
             crease_angle: match shape.options.smoothing {
                 Smoothing::Auto => shape.options.crease_angle,
@@ -105,8 +106,10 @@ impl<'a> Maker<'a> {
                 surface(Tessellation { mesh: Mesh::default(), deviation: Deviation::NONE })
             }
         };
-        let made = if shape.options.smoothing == Smoothing::Flat { flatten(made) } else { made };
-        self.within_limits(made)
+        // Boxes and polygons have one normal a face already.
+        let curved = matches!(shape.recipe, Recipe::Revolution(_) | Recipe::Extrusion(_) | Recipe::Sweep(_));
+        let flat = curved && shape.options.smoothing == Smoothing::Flat;
+        self.within_limits(if flat { flatten(made) } else { made })
     }
 
     fn within_limits(&self, made: Made) -> Result<Made, RealizeError> {
@@ -278,6 +281,14 @@ fn flatten(mut made: Made) -> Made {
     }
     mesh.vertices = vertices;
     made
+}
+
+/// What is left of a tolerance when positions are rounded to single precision, half of it at least.
+fn before_rounding(shape: &Shape, tolerance: f64) -> f64 {
+    let placement = &shape.options.placement;
+    let reach = super::source::extent(&shape.recipe).reach() * stretch(&placement.matrix3);
+    let rounding = single_rounding(reach + placement.translation.length());
+    (tolerance - rounding).max(tolerance / 2.0)
 }
 
 /// Turns and scales a finished shape from the document's unit and axes to metres with y up.

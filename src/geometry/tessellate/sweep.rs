@@ -110,6 +110,57 @@ impl Curve for Traced<'_> {
     }
 }
 
+/// The section as a twist sees it. Its straight sides become saddles, and a cell of width a and length h with
+/// rate w of twist leaves out w a h / 4 at its diagonal, whatever its proportions: sides are cut so that
+/// cells come out about square. Long thin cells would be as near to the surface, but tilt against it by an
+/// angle that no tolerance lessens.
+struct Twisted<'a> {
+    profile: &'a AnyCurve,
+    rate: f64,
+}
+
+impl Curve for Twisted<'_> {
+    fn domain(&self) -> Domain {
+        self.profile.domain()
+    }
+
+    fn is_closed(&self) -> bool {
+        self.profile.is_closed()
+    }
+
+    fn evaluate(&self, t: f64, side: Side) -> Jet {
+        self.profile.evaluate(t, side)
+    }
+
+    fn joints(&self) -> Vec<f64> {
+        self.profile.joints()
+    }
+
+    fn chord_deviation(&self, from: f64, to: f64) -> f64 {
+        let width = self.profile.point(from).distance(self.profile.point(to));
+        self.profile.chord_deviation(from, to).max(self.rate * width * width / 4.0)
+    }
+}
+
+/// The section cut into chords; their deviations are those of the section alone.
+fn section_stations(
+    shape: &Sweep,
+    surface: &SweptSurface,
+    density: Density,
+    limit: u64,
+) -> Result<Vec<Station>, TessellateError> {
+    let rate = surface.frames.twist_rate().abs();
+    if rate == 0.0 {
+        return discretize(&shape.profile, density, limit);
+    }
+    let mut stations = discretize(&Twisted { profile: &shape.profile, rate }, density, limit)?;
+    for index in 1..stations.len() {
+        let (from, to) = (stations[index - 1].t, stations[index].t);
+        stations[index - 1].deviation = shape.profile.chord_deviation(from, to);
+    }
+    Ok(stations)
+}
+
 /// Distance of a point from the line of a chord.
 fn across(point: DVec3, (start, end): (DVec3, DVec3)) -> f64 {
     let direction = (end - start).normalize_or_zero();
@@ -142,7 +193,7 @@ impl Plan {
             SurfaceDensity::Grid { u, v } => (Density::Count(u), Density::Count(v)),
         };
         let limit = detail.triangle_limit;
-        let mut profile = discretize(&shape.profile, across, limit)?;
+        let mut profile = section_stations(shape, surface, across, limit)?;
         let profile_closed = shape.profile.is_closed();
         if profile_closed && (profile.len() < 4 || twice_area(&places(&profile)) == 0.0) {
             return Err(TessellateError::NoArea);
