@@ -244,7 +244,7 @@ def tolerance_table(rows: list[dict[str, Any]]) -> str:
         "vase within 0.1 mm",
         "triangles",
         "measured deviation",
-        "of the optimum at that deviation",
+        "times the optimum",
         "times Kiln",
     ]
     body = [
