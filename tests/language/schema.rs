@@ -62,3 +62,18 @@ fn the_reference_page_lists_every_table_once() {
     assert!(page.contains("| `frame` | `\"rotation-minimizing\"` | `\"rotation-minimizing\"` |"), "{page}");
     assert!(page.contains("| `smoothstep(from, to, x)` |"));
 }
+
+/// The page and the schema that editors and readers find in `docs` are those of this build; `KILN_BLESS=1`
+/// writes them anew.
+#[test]
+fn docs_hold_the_generated_page_and_schema() {
+    let pretty = serde_json::to_string_pretty(&schema()).expect("plain data") + "\n";
+    for (path, text) in [("docs/kiln.schema.json", pretty), ("docs/reference.md", reference())] {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+        if std::env::var_os("KILN_BLESS").is_some() {
+            std::fs::write(&path, &text).expect("docs can be written");
+        }
+        let kept = std::fs::read_to_string(&path).unwrap_or_default();
+        assert!(kept == text, "{} is stale; run the tests with KILN_BLESS=1", path.display());
+    }
+}

@@ -14,7 +14,8 @@ table! {
         angle: Sp<f64> = 360.0 => Check::above(0.0).up_to(360.0);
         /// Where the turn starts, in degrees from +x.
         start: Sp<f64> = 0.0 => Check::within(-360.0, 360.0);
-        /// Whether open ends are closed with flat caps, so that the result is a solid.
+        /// Whether a part turn gets flat faces at its two ends. They need a profile that encloses an area: one that is
+        /// closed, or runs from the axis to the axis.
         caps: Sp<bool> = true;
     }
 }
