@@ -2,6 +2,7 @@
 
 use crate::build::{self, Built};
 use crate::geometry::curve::AnyCurve;
+use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::{Evidence, TessellateError};
 use crate::language::Document;
 use crate::language::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -121,7 +122,7 @@ fn refusals(built: &Built, errors: Vec<(ShapeHandle, RealizeError)>) -> Vec<Diag
 fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnostic {
     let name = &built.model.shape(shape).name;
     let (code, help) = match error {
-        RealizeError::Limit { .. } | RealizeError::Tessellate(TessellateError::TooMany { .. }) => (
+        RealizeError::Limit { .. } | RealizeError::Together { .. } | RealizeError::Tessellate(TessellateError::TooMany { .. }) => (
             Code::LimitPassed,
             "write a coarser `tolerance`, fewer `segments`, or fewer copies; `[limits]` can only be lowered here",
         ),
@@ -150,6 +151,10 @@ fn beyond_tolerance(scene: &scene::Scene, shapes: &[ShapeHandle], built: &Built)
     let beyond = |(geometry, shape): (&scene::Geometry, &ShapeHandle)| {
         let tolerance = geometry.tolerance?;
         let bound = geometry.deviation.bound;
+        let rounding = single_rounding(Bounds::of_points(geometry.mesh.points.iter().copied()).reach());
+        if bound <= tolerance && bound + rounding > tolerance {
+            return Some(imprecise(&geometry.name, (bound, rounding, tolerance)).at(place(built, *shape), "this shape"));
+        }
         (bound > tolerance * (1.0 + 1e-9)).then(|| {
             let sampled = if geometry.deviation.evidence == Evidence::Sampled { " (sampled)" } else { "" };
             let message = format!(
@@ -164,16 +169,27 @@ fn beyond_tolerance(scene: &scene::Scene, shapes: &[ShapeHandle], built: &Built)
     scene.geometries.iter().zip(shapes).filter_map(beyond).collect()
 }
 
+fn imprecise(name: &str, (bound, rounding, tolerance): (f64, f64, f64)) -> Diagnostic {
+    let message = format!(
+        "shape `{name}` lies up to {:.3e} m from the true surface, {rounding:.3e} m of that by rounding to single precision, more than its tolerance of {tolerance:.3e} m",
+        bound + rounding
+    );
+    Diagnostic::warning(Code::BeyondPrecision, message)
+        .help("model it near the origin and let a node carry it to its place, or write a coarser `tolerance`")
+}
+
 fn unwritable(error: &SceneError, built: &Built) -> Diagnostic {
     let named = |name: &String| built.model.shapes.iter().position(|shape| shape.name == *name);
     let (code, shape) = match error {
         SceneError::NoTriangle(name) => (Code::NothingToShow, named(name)),
         SceneError::TooLarge(name) => (Code::LimitPassed, named(name)),
+        SceneError::NoUv(name, _) => (Code::Conflict, named(name)),
         SceneError::NotFinite(name) | SceneError::NotUnit(name, _) => (Code::NotFinite, named(name)),
         _ => (Code::NothingToShow, None),
     };
     let span = shape.and_then(|index| built.places.get(index).copied()).unwrap_or(Span::NONE);
-    Diagnostic::error(code, error.to_string()).at(span, "this shape")
+    let report = Diagnostic::error(code, error.to_string()).at(span, "this shape");
+    if let SceneError::NoUv(..) = error { report.help("leave `uv = \"none\"` out, or give it a material without textures") } else { report }
 }
 
 fn measured(

@@ -1,5 +1,7 @@
 //! The integration tests: one binary, a module for each theme.
 
 mod architecture;
+mod bake;
 mod import;
 mod language;
+mod laws;

@@ -111,7 +111,9 @@ impl Builder<'_> {
                 Some(here(Recipe::Assembly(parts)))
             }
             Kind::Array(array) => {
-                let of = self.shape_of(name, 0, &array.of)?;
+                let of = self.shape_of(name, 0, &array.of);
+                self.check_count(array)?;
+                let of = of?;
                 Some(here(Recipe::Assembly(copies(array).into_iter().map(|map| (of, map)).collect())))
             }
             Kind::Group(group) => {
@@ -123,6 +125,19 @@ impl Builder<'_> {
                 Some(here(Recipe::Assembly(parts)))
             }
         }
+    }
+
+    /// A block of copies is refused before it is laid out.
+    fn check_count(&mut self, array: &spec::Array) -> Option<()> {
+        const MOST: u64 = 1_000_000;
+        let Count::Block(counts) = array.count.value else { return Some(()) };
+        let copies = counts.iter().fold(1, |product: u64, count| product.saturating_mul(u64::from(*count)));
+        if copies <= MOST {
+            return Some(());
+        }
+        let message = format!("this array makes {copies} copies, and the limit is {MOST}");
+        self.report(Diagnostic::error(Code::LimitPassed, message).at(array.count.span, "too many"));
+        None
     }
 
     fn extrusion(&mut self, extrude: &spec::Extrude) -> Option<Recipe> {

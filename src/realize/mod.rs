@@ -4,6 +4,7 @@
 //! every part of it, after all maps; the limits hold before memory is taken. Not promised: that a shape is
 //! closed; the report measures that.
 
+mod limit;
 mod node;
 mod shape;
 mod source;
@@ -33,13 +34,21 @@ pub enum RealizeError {
     /// The polygons are no mesh.
     #[error(transparent)]
     Polygons(#[from] PolygonError),
-    /// More vertices than allowed.
+    /// More vertices or bytes than allowed.
     #[error("this would make at least {needed} {what}, and the limit is {limit}")]
     Limit {
         /// What is counted.
         what: &'static str,
         /// How many there would be.
         needed: u64,
+        /// The limit.
+        limit: u64,
+    },
+    /// All shapes together pass a limit that none of them passes alone.
+    #[error("all shapes together make more {what} than the limit of {limit}")]
+    Together {
+        /// What is counted.
+        what: &'static str,
         /// The limit.
         limit: u64,
     },

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
+use super::limit::{Cost, Spent};
 use super::shape::{self, Made, Maker};
 use super::{Options, RealizeError, Realized};
 use crate::geometry::mesh;
@@ -37,17 +38,24 @@ fn make_all(
     shown: &[Shown],
 ) -> Result<Vec<Made>, Vec<(ShapeHandle, RealizeError)>> {
     let maker = Maker::new(model, options);
+    let spent = Spent::default();
     let make = |handle: &ShapeHandle| {
+        spent.check(&model.limits).map_err(|error| (*handle, error))?;
         let overrides: Vec<_> =
             shown.iter().filter(|(shape, _)| shape == handle).map(|(_, material)| *material).collect();
         let uv = shape::wants_uv(model, *handle, &overrides);
         let mut made = maker.make(*handle, uv).map_err(|error| (*handle, error))?;
+        spent.add(Cost::of(&made.mesh));
         shape::to_metres(&mut made, &model.frame);
         Ok(shape::group_by_material(made))
     };
     // One shape is made on this thread: waking others costs more than a small shape takes.
     let results: Vec<Result<Made, _>> =
         if let [one] = shapes { vec![make(one)] } else { shapes.par_iter().map(make).collect() };
+    // Which shapes were still made when the sum passed a limit depends on the threads; that it passed does not.
+    if let (Err(error), Some(first)) = (spent.check(&model.limits), shapes.first()) {
+        return Err(vec![(*first, error)]);
+    }
     let mut made = Vec::new();
     let mut errors = Vec::new();
     for result in results {

@@ -2,12 +2,17 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
+use super::limit::{self, Cost};
 use super::source::source_count;
 use super::{Options, RealizeError};
 use crate::geometry::mesh;
 use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
 use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex};
+<<<<<<< HEAD
 use crate::geometry::number::single_rounding;
+=======
+use crate::geometry::number::{Bounds, single_rounding};
+>>>>>>> tests
 use crate::geometry::tessellate::{
     Detail, Deviation, SurfaceDensity, TessellateError, Tessellation, cuboid, extrude, revolve, sweep,
 };
@@ -28,33 +33,57 @@ pub(super) struct Made {
 pub(super) struct Maker<'a> {
     model: &'a Model,
     coarser: f64,
+    /// The box of each shape, its placement applied.
+    extents: Vec<Bounds>,
+}
+
+/// What a shape gets from those that use it, as lengths in the space where it is placed.
+#[derive(Clone, Copy)]
+struct Inherited {
+    /// What they ask for, unless it asks for another itself.
+    tolerance: Option<f64>,
+    /// What rounding to single precision will add.
+    rounding: f64,
+    uv: bool,
+}
+
+impl Inherited {
+    /// Behind a map that stretches lengths.
+    fn within(self, map: &DAffine3) -> Self {
+        let stretch = stretch(&map.matrix3);
+        Self { tolerance: self.tolerance.map(|tolerance| tolerance / stretch), rounding: self.rounding / stretch, ..self }
+    }
 }
 
 impl<'a> Maker<'a> {
     pub(super) fn new(model: &'a Model, options: &Options) -> Self {
-        Self { model, coarser: if options.coarser > 0.0 { options.coarser } else { 1.0 } }
+        let coarser = if options.coarser > 0.0 { options.coarser } else { 1.0 };
+        Self { model, coarser, extents: super::source::extents(model) }
     }
 
     /// The shape in the document's unit, its placement applied. Anchors carry the index that
     /// [`sources`](super::sources) gives to their surface.
     pub(super) fn make(&self, handle: ShapeHandle, uv: bool) -> Result<Made, RealizeError> {
         let mut first_source = 0;
-        self.part(handle, uv, None, &mut first_source)
+        let rounding = single_rounding(self.extents[handle.0 as usize].reach());
+        self.part(handle, Inherited { tolerance: self.model.tolerance, rounding, uv }, &mut first_source)
     }
 
     fn part(
         &self,
         handle: ShapeHandle,
-        uv: bool,
-        inherited: Option<f64>,
+        inherited: Inherited,
         next_source: &mut u32,
     ) -> Result<Made, RealizeError> {
         let shape = self.model.shape(handle);
-        let tolerance = shape.options.tolerance.or(inherited);
+        let uv = inherited.uv;
+        let wanted = Inherited { tolerance: shape.options.tolerance.or(inherited.tolerance), ..inherited };
         let mut made = match &shape.recipe {
-            Recipe::Assembly(parts) => self.assembly(parts, (uv, tolerance), next_source)?,
+            Recipe::Assembly(parts) => {
+                self.assembly(parts, wanted.within(&shape.options.placement), next_source)?
+            }
             recipe => {
-                let mut made = self.leaf(shape, uv, tolerance)?;
+                let mut made = self.leaf(shape, wanted)?;
                 shift_sources(&mut made, *next_source);
                 *next_source += source_count(recipe);
                 made
@@ -73,13 +102,19 @@ impl<'a> Maker<'a> {
         Ok(made)
     }
 
-    fn leaf(&self, shape: &Shape, uv: bool, tolerance: Option<f64>) -> Result<Made, RealizeError> {
+    fn leaf(&self, shape: &Shape, Inherited { tolerance, rounding, uv }: Inherited) -> Result<Made, RealizeError> {
         let stretch = stretch(&shape.options.placement.matrix3);
         let tolerance = self.tolerance(shape, tolerance);
+        // What rounding will add is taken off beforehand, as long as it leaves half.
+        let aim = (tolerance - rounding).max(tolerance / 2.0);
         let detail = Detail {
             density: match shape.options.density {
                 Some(grid) => SurfaceDensity::Grid { u: grid.u, v: grid.v },
+<<<<<<< HEAD
                 None => SurfaceDensity::Tolerance(before_rounding(shape, tolerance) / stretch),
+=======
+                None => SurfaceDensity::Tolerance(aim / stretch),
+>>>>>>> tests
             },
             crease_angle: match shape.options.smoothing {
                 Smoothing::Auto => shape.options.crease_angle,
@@ -87,7 +122,7 @@ impl<'a> Maker<'a> {
                 Smoothing::Flat => 0.0,
             },
             uv,
-            triangle_limit: self.model.limits.triangles,
+            triangle_limit: limit::triangle_limit(&self.model.limits),
         };
         let surface = |made: Tessellation| Made {
             mesh: made.mesh,
@@ -97,37 +132,36 @@ impl<'a> Maker<'a> {
             notes: Vec::new(),
         };
         let made = match &shape.recipe {
-            Recipe::Cuboid { size, center } => surface(cuboid(*size, *center, uv)),
-            Recipe::Revolution(revolution) => surface(revolve(revolution, &detail)?),
-            Recipe::Extrusion(extrusion) => surface(extrude(extrusion, &detail)?),
-            Recipe::Sweep(path) => surface(sweep(path, &detail)?),
-            Recipe::Polygons { mesh, materials } => self.polygons(shape, mesh, materials)?,
-            Recipe::Assembly(_) => {
-                surface(Tessellation { mesh: Mesh::default(), deviation: Deviation::NONE })
-            }
+            Recipe::Cuboid { size, center } => Ok(cuboid(*size, *center, uv)),
+            Recipe::Revolution(revolution) => revolve(revolution, &detail),
+            Recipe::Extrusion(extrusion) => extrude(extrusion, &detail),
+            Recipe::Sweep(path) => sweep(path, &detail),
+            Recipe::Polygons { mesh, materials } => return self.finished(shape, self.polygons(shape, mesh, materials)?),
+            Recipe::Assembly(_) => Ok(Tessellation { mesh: Mesh::default(), deviation: Deviation::NONE }),
         };
+<<<<<<< HEAD
         // Boxes and polygons have one normal a face already.
         let curved = matches!(shape.recipe, Recipe::Revolution(_) | Recipe::Extrusion(_) | Recipe::Sweep(_));
         let flat = curved && shape.options.smoothing == Smoothing::Flat;
         self.within_limits(if flat { flatten(made) } else { made })
+=======
+        let made = made.map_err(|error| match error {
+            TessellateError::TooMany { needed, .. } => limit::in_terms_of(needed, &self.model.limits),
+            error => error.into(),
+        })?;
+        self.finished(shape, surface(made))
+>>>>>>> tests
     }
 
-    fn within_limits(&self, made: Made) -> Result<Made, RealizeError> {
-        let limits = &self.model.limits;
-        let triangles = made.mesh.triangles.len() as u64;
-        if triangles > limits.triangles {
-            return Err(TessellateError::TooMany { needed: triangles, limit: limits.triangles }.into());
-        }
-        let vertices = made.mesh.vertices.len() as u64;
-        if vertices > limits.vertices {
-            return Err(RealizeError::Limit { what: "vertices", needed: vertices, limit: limits.vertices });
-        }
+    fn finished(&self, shape: &Shape, made: Made) -> Result<Made, RealizeError> {
+        let made = if shape.options.smoothing == Smoothing::Flat { flatten(made) } else { made };
+        Cost::of(&made.mesh).check(&self.model.limits)?;
         Ok(made)
     }
 
     /// Tolerance in the document's unit; where none is written, the diagonal of the placed shape / 2000.
     fn tolerance(&self, shape: &Shape, written: Option<f64>) -> f64 {
-        let tolerance = written.or(self.model.tolerance).unwrap_or_else(|| {
+        let tolerance = written.unwrap_or_else(|| {
             let diagonal = super::source::extent(&shape.recipe).diagonal();
             diagonal * stretch(&shape.options.placement.matrix3) / 2000.0
         });
@@ -175,7 +209,7 @@ impl<'a> Maker<'a> {
     fn assembly(
         &self,
         parts: &[(ShapeHandle, DAffine3)],
-        (uv, tolerance): (bool, Option<f64>),
+        inherited: Inherited,
         next_source: &mut u32,
     ) -> Result<Made, RealizeError> {
         let mut whole = Made {
@@ -185,39 +219,23 @@ impl<'a> Maker<'a> {
             tolerance: None,
             notes: Vec::new(),
         };
-        let mut last: Option<(ShapeHandle, Made, u32)> = None;
-        for (part, map) in parts {
-            let (_, made, sources) = match last.take().filter(|(known, ..)| known == part) {
-                Some(known) => known,
-                None => {
-                    let mut sources = 0;
-                    let tolerance = tolerance.map(|tolerance| tolerance / stretch(&map.matrix3));
-                    (*part, self.part(*part, uv, tolerance, &mut sources)?, sources)
-                }
-            };
-            self.room(&whole, &made)?;
-            let mut copy = made.clone();
-            shift_sources(&mut copy, *next_source);
-            *next_source += sources;
-            place(&mut copy, map);
-            join(&mut whole, &copy);
-            last = Some((*part, made, sources));
-        }
-        Ok(whole)
-    }
-
-    fn room(&self, whole: &Made, part: &Made) -> Result<(), RealizeError> {
-        let limits = &self.model.limits;
-        let triangles = (whole.mesh.triangles.len() + part.mesh.triangles.len()) as u64;
-        let vertices = (whole.mesh.vertices.len() + part.mesh.vertices.len()) as u64;
-        for (what, needed, limit) in
-            [("triangles", triangles, limits.triangles), ("vertices", vertices, limits.vertices)]
-        {
-            if needed > limit {
-                return Err(RealizeError::Limit { what, needed, limit });
+        let mut cost = Cost::default();
+        for copies in parts.chunk_by(|(one, _), (next, _)| one == next) {
+            let (handle, first) = copies[0];
+            let mut sources = 0;
+            let made = self.part(handle, inherited.within(&first), &mut sources)?;
+            // All copies are counted before the first is made.
+            cost = cost.plus(Cost::of(&made.mesh).times(copies.len() as u64));
+            cost.check(&self.model.limits)?;
+            for (_, map) in copies {
+                let mut copy = made.clone();
+                shift_sources(&mut copy, *next_source);
+                *next_source += sources;
+                place(&mut copy, map);
+                join(&mut whole, &copy);
             }
         }
-        Ok(())
+        Ok(whole)
     }
 }
 

@@ -216,6 +216,36 @@ fn swept_within(surface: &SweptSurface, point: DVec3, stretch: &Stretch, across:
     if beyond { across } else { hypot(across, along) }
 }
 
+/// A box around each shape of a model, its placement applied, in the document's unit.
+pub(super) fn extents(model: &Model) -> Vec<Bounds> {
+    let mut all: Vec<Bounds> = Vec::with_capacity(model.shapes.len());
+    for shape in &model.shapes {
+        let own = match &shape.recipe {
+            // A recipe refers only to shapes before it.
+            Recipe::Assembly(parts) => parts
+                .iter()
+                .map(|(part, map)| mapped(&all[part.0 as usize], map))
+                .fold(Bounds::EMPTY, Bounds::union),
+            recipe => extent(recipe),
+        };
+        all.push(mapped(&own, &shape.options.placement));
+    }
+    all
+}
+
+/// The box around a mapped box.
+fn mapped(bounds: &Bounds, map: &DAffine3) -> Bounds {
+    if bounds.is_empty() {
+        return Bounds::EMPTY;
+    }
+    let pick = |bit: u32, low: f64, high: f64| if bit == 0 { low } else { high };
+    let (low, high) = (bounds.min, bounds.max);
+    let corner = |k: u32| {
+        DVec3::new(pick(k & 1, low.x, high.x), pick(k & 2, low.y, high.y), pick(k & 4, low.z, high.z))
+    };
+    Bounds::of_points((0..8).map(|k| map.transform_point3(corner(k))))
+}
+
 /// The box of a recipe that is not an assembly, from points along its curves.
 pub(super) fn extent(recipe: &Recipe) -> Bounds {
     match recipe {

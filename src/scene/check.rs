@@ -36,6 +36,9 @@ pub enum SceneError {
     /// An index points at nothing.
     #[error("{0} refers to something that does not exist")]
     Dangling(String),
+    /// A texture is shown on a shape without texture coordinates.
+    #[error("shape `{0}` has no texture coordinates, but its material `{1}` shows a texture")]
+    NoUv(String, String),
     /// Runs do not cover the triangles in order.
     #[error("shape `{0}` has runs that do not cover its triangles")]
     Runs(String),
@@ -127,7 +130,15 @@ fn check_use(scene: &Scene, mesh: &MeshUse) -> Result<(), SceneError> {
     let geometry = scene.geometries.get(mesh.geometry).ok_or_else(dangling)?;
     let origins = geometry.mesh.runs.iter().all(|run| (run.origin as usize) < mesh.materials.len());
     let materials = mesh.materials.iter().flatten().all(|material| *material < scene.materials.len());
-    if origins && materials { Ok(()) } else { Err(dangling()) }
+    if !origins || !materials {
+        return Err(dangling());
+    }
+    let shown = mesh.materials.iter().flatten().map(|material| &scene.materials[*material]);
+    let textured = shown.into_iter().find(|material| material.has_texture());
+    match textured.filter(|_| !geometry.uv) {
+        Some(material) => Err(SceneError::NoUv(geometry.name.clone(), material.name.clone())),
+        None => Ok(()),
+    }
 }
 
 fn check_node(scene: &Scene, index: usize, node: &Node) -> Result<(), SceneError> {

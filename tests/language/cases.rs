@@ -13,18 +13,24 @@ use kiln::language::Document;
 use kiln::language::diagnostic::{Diagnostic, Diagnostics, Severity};
 use kiln::language::source::MemoryFiles;
 
-struct Case {
-    name: String,
+pub(crate) struct Case {
+    pub(crate) name: String,
     files: Vec<(String, String)>,
-    overrides: Vec<(String, String)>,
-    variant: Option<String>,
+    pub(crate) overrides: Vec<(String, String)>,
+    pub(crate) variant: Option<String>,
     arguments: Vec<String>,
     expected: Vec<String>,
 }
 
 #[test]
 fn every_case_gives_the_messages_beside_it() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/language/cases");
+    check_folder("tests/language/cases", 150, |case, files| diagnostics(case, &files));
+}
+
+/// Runs every case of a folder and holds what is found against what stands beside it.
+pub(crate) fn check_folder(folder: &str, least: usize, run: impl Fn(&Case, MemoryFiles) -> Diagnostics) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let run = |case: &Case| described(case, &run);
     let mut paths: Vec<_> = std::fs::read_dir(&folder)
         .expect("the cases are there")
         .map(|entry| entry.expect("it is read").path())
@@ -37,7 +43,7 @@ fn every_case_gives_the_messages_beside_it() {
         let cases = read(&text);
         count += cases.len();
         if std::env::var_os("KILN_BLESS").is_some() {
-            std::fs::write(&path, bless(&cases)).expect("cases are written");
+            std::fs::write(&path, bless(&cases, &run)).expect("cases are written");
             continue;
         }
         for case in &cases {
@@ -50,7 +56,7 @@ fn every_case_gives_the_messages_beside_it() {
         }
     }
     assert!(wrong.is_empty(), "\n{wrong}");
-    assert!(count >= 150, "only {count} cases were found");
+    assert!(count >= least, "only {count} cases were found");
 }
 
 fn read(text: &str) -> Vec<Case> {
@@ -90,10 +96,10 @@ fn take_argument(case: &mut Case, argument: &str) {
     }
 }
 
-fn run(case: &Case) -> Vec<String> {
+fn described(case: &Case, run: &impl Fn(&Case, MemoryFiles) -> Diagnostics) -> Vec<String> {
     let files =
         case.files.iter().fold(MemoryFiles::new(), |files, (path, text)| files.with(path, unescape(text)));
-    let found = diagnostics(case, &files);
+    let found = run(case, files);
     // Whatever is found can be shown.
     assert_eq!(found.render(true).is_empty(), found.is_empty());
     assert_eq!(found.to_json().as_array().map(Vec::len), Some(found.len()));
@@ -131,7 +137,7 @@ fn describe(one: &Diagnostic, found: &Diagnostics) -> Vec<String> {
     lines
 }
 
-fn bless(cases: &[Case]) -> String {
+fn bless(cases: &[Case], run: &impl Fn(&Case) -> Vec<String>) -> String {
     let mut text = String::new();
     for case in cases {
         let _ = writeln!(text, "=== {}", case.name);

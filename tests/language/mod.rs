@@ -1,6 +1,6 @@
 //! From text to a typed document, or to messages.
 
-mod cases;
+pub(crate) mod cases;
 mod codes;
 mod files;
 mod robust;

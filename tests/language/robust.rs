@@ -11,7 +11,7 @@ fn digest(bytes: &[u8]) -> usize {
         Ok(document) => {
             for variant in document.variants() {
                 if let Err(found) = document.spec(Some(&variant), &[]) {
-                    let _ = found.render(true);
+                    assert!(!found.render(true).is_empty());
                 }
             }
             match document.spec(None, &[("height".to_owned(), "= 1 +".to_owned())]) {

@@ -13,6 +13,13 @@ const GAUSS: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.236_926_885_056_189_08),
 ];
 
+/// Length of a short smooth step between two parameters, metres, by one rule of five points: where the
+/// direction turns by a tenth of a radian the share that is wrong is below 1e-12. Five evaluations.
+#[must_use]
+pub fn length_of_step(curve: &impl Curve, from: f64, to: f64) -> f64 {
+    gauss(curve, from, to)
+}
+
 fn gauss(curve: &impl Curve, from: f64, to: f64) -> f64 {
     let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0);
     let speed = |place: f64| curve.evaluate(middle + half * place, Side::After).first.length();

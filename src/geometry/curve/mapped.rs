@@ -62,23 +62,32 @@ impl Curve for Transformed {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reversed {
     curve: Box<AnyCurve>,
+    /// Each joint with the parameter that the curve itself has there, increasing: the way from one to the
+    /// other rounds, and a joint must be met exactly.
+    joints: Vec<(f64, f64)>,
 }
 
 impl Reversed {
     /// `curve`, backwards.
     #[must_use]
     pub fn new(curve: AnyCurve) -> Self {
-        Self { curve: Box::new(curve) }
+        let domain = curve.domain();
+        let joints = curve.joints().into_iter().rev().map(|t| (domain.start + (domain.end - t), t)).collect();
+        Self { curve: Box::new(curve), joints }
     }
 
     fn mirrored(&self, t: f64) -> f64 {
         let domain = self.curve.domain();
         if t <= domain.start {
-            domain.end
-        } else if t >= domain.end {
-            domain.start
-        } else {
-            domain.start + (domain.end - t)
+            return domain.end;
+        }
+        if t >= domain.end {
+            return domain.start;
+        }
+        let near = self.joints.partition_point(|(joint, _)| *joint < t);
+        match self.joints.get(near) {
+            Some((joint, own)) if *joint == t => *own,
+            _ => domain.start + (domain.end - t),
         }
     }
 }
@@ -99,7 +108,7 @@ impl Curve for Reversed {
     }
 
     fn joints(&self) -> Vec<f64> {
-        self.curve.joints().into_iter().rev().map(|t| self.mirrored(t)).collect()
+        self.joints.iter().map(|(joint, _)| *joint).collect()
     }
 
     fn chord_deviation(&self, from: f64, to: f64) -> f64 {

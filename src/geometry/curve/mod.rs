@@ -22,7 +22,7 @@ pub use any::AnyCurve;
 pub use bezier::{BezierError, BezierSpline};
 pub use ellipse::EllipseArc;
 pub use helix::Helix;
-pub use length::{length, length_between};
+pub use length::{length, length_between, length_of_step};
 pub use mapped::{Reversed, Transformed};
 pub use nearest::distance_within;
 pub use path::{Continuity, Path, classify};
@@ -86,8 +86,8 @@ pub trait Curve: Send + Sync {
     /// the domain is taken as the nearer end.
     fn evaluate(&self, t: f64, side: Side) -> Jet;
 
-    /// Parameters strictly inside the domain, increasing, where the direction jumps. A discretization must
-    /// keep these points.
+    /// Parameters strictly inside the domain, increasing, where the direction jumps, and every given point of
+    /// a polyline. A discretization must keep these points.
     fn joints(&self) -> Vec<f64>;
 
     /// A proved bound on the distance between the chord from `from` to `to` and the part of the curve it

@@ -58,6 +58,17 @@ pub fn classify(before: &Jet, after: &Jet, size: f64) -> Continuity {
 pub struct Path {
     curves: Vec<AnyCurve>,
     closed: bool,
+    joints: Vec<Corner>,
+}
+
+/// A place where the direction jumps, in the parameter of the path and in that of its curve. Both are kept:
+/// the way from one to the other rounds, and a joint must be met exactly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Corner {
+    t: f64,
+    curve: usize,
+    /// `None` between two curves.
+    inner: Option<f64>,
 }
 
 impl Path {
@@ -68,7 +79,25 @@ impl Path {
         let last = curves.last()?;
         let end = last.evaluate(last.domain().end, Side::Before).point;
         let closed = start == end;
-        Some(Self { curves, closed })
+        let mut path = Self { curves, closed, joints: Vec::new() };
+        path.joints = path.find_joints();
+        Some(path)
+    }
+
+    fn find_joints(&self) -> Vec<Corner> {
+        let mut joints = Vec::new();
+        for (index, curve) in self.curves.iter().enumerate() {
+            let domain = curve.domain();
+            if index > 0 && self.continuity(index) < Continuity::G1 {
+                joints.push(Corner { t: index as f64, curve: index, inner: None });
+            }
+            joints.extend(curve.joints().into_iter().map(|inner| Corner {
+                t: index as f64 + (inner - domain.start) / domain.span(),
+                curve: index,
+                inner: Some(inner),
+            }));
+        }
+        joints
     }
 
     /// The curves it is made of.
@@ -91,15 +120,24 @@ impl Path {
         classify(&before, &after, size.fold(0.0, f64::max))
     }
 
+    /// The curve of a parameter and its own parameter there.
     fn locate(&self, t: f64, side: Side) -> (usize, f64) {
         let last = self.curves.len() - 1;
         let t = t.clamp(0.0, (last + 1) as f64);
+        let near = self.joints.partition_point(|joint| joint.t < t);
+        if let Some(Corner { curve, inner: Some(inner), .. }) = self.joints.get(near).filter(|joint| joint.t == t) {
+            return (*curve, *inner);
+        }
         let mut index = t.floor();
         if side == Side::Before && index == t && t > 0.0 {
             index -= 1.0;
         }
         let index = index.min(last as f64);
+<<<<<<< HEAD
         (floor_index(index), t - index)
+=======
+        (index as usize, self.curves[index as usize].domain().at(t - index))
+>>>>>>> tests
     }
 }
 
@@ -113,33 +151,20 @@ impl Curve for Path {
     }
 
     fn evaluate(&self, t: f64, side: Side) -> Jet {
-        let (index, local) = self.locate(t, side);
+        let (index, inner) = self.locate(t, side);
         let curve = &self.curves[index];
-        let domain = curve.domain();
-        let jet = curve.evaluate(domain.at(local), side);
-        let rate = domain.span();
+        let jet = curve.evaluate(inner, side);
+        let rate = curve.domain().span();
         Jet { point: jet.point, first: jet.first * rate, second: jet.second * (rate * rate) }
     }
 
     fn joints(&self) -> Vec<f64> {
-        let mut joints = Vec::new();
-        for (index, curve) in self.curves.iter().enumerate() {
-            let domain = curve.domain();
-            if index > 0 && self.continuity(index) < Continuity::G1 {
-                joints.push(index as f64);
-            }
-            let inner = curve.joints().into_iter().map(|t| index as f64 + (t - domain.start) / domain.span());
-            joints.extend(inner);
-        }
-        joints
+        self.joints.iter().map(|joint| joint.t).collect()
     }
 
     fn chord_deviation(&self, from: f64, to: f64) -> f64 {
         let ((first, start), (last, end)) = (self.locate(from, Side::After), self.locate(to, Side::Before));
-        let part = |index: usize, start: f64, end: f64| {
-            let domain = self.curves[index].domain();
-            self.curves[index].chord_deviation(domain.at(start), domain.at(end))
-        };
+        let part = |index: usize, start: f64, end: f64| self.curves[index].chord_deviation(start, end);
         if first >= last {
             return part(first, start, end);
         }
@@ -147,9 +172,10 @@ impl Curve for Path {
         let mut deviation = 0.0_f64;
         let mut previous = 0.0;
         for index in first..=last {
-            let start = if index == first { start } else { 0.0 };
-            let end = if index == last { end } else { 1.0 };
-            let reached = self.evaluate(index as f64 + end, Side::Before).point;
+            let curve = &self.curves[index];
+            let start = if index == first { start } else { curve.domain().start };
+            let end = if index == last { end } else { curve.domain().end };
+            let reached = curve.evaluate(end, Side::Before).point;
             let distance = super::bezier::distance_to_segment(reached, chord);
             deviation = deviation.max(distance.max(previous) + part(index, start, end));
             previous = distance;

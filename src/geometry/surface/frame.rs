@@ -10,7 +10,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::curve::{AnyCurve, Curve, Side};
+use crate::geometry::curve::{AnyCurve, Curve, Side, length_of_step};
 use crate::geometry::number::{atan2, sin_cos};
 
 /// Three perpendicular unit vectors on a path: `side` x `up` = `along`.
@@ -99,9 +99,10 @@ impl FrameField {
     fn walk_to(&mut self, end: f64) {
         let start = self.stops[self.stops.len() - 1];
         let straight = self.path.chord_deviation(start.t, end) == 0.0;
-        let mut steps = if straight { 1 } else { 32 };
+        let mut steps = if straight { 1 } else { self.first_steps(start.t, end) };
         let mut walked = self.walk(start, end, steps);
-        while !straight && steps < 8192 {
+        let most = steps.max(8192);
+        while !straight && steps < most {
             steps *= 2;
             let finer = self.walk(start, end, steps);
             let change = finer[finer.len() - 1].frame.side.distance(walked[walked.len() - 1].frame.side);
@@ -114,6 +115,26 @@ impl FrameField {
         self.stops.extend(walked);
     }
 
+    /// Steps over which the path turns little: frames at whole turns from each other would look alike. At most
+    /// 2^20; the frames of a path with more bends than that are rough.
+    fn first_steps(&self, start: f64, end: f64) -> u32 {
+        // An arc of half a radian deviates by a sixteenth of its length.
+        const BENT: f64 = 1.0 / 16.0;
+        let mut steps = 32_u32;
+        while steps < 1 << 20 {
+            let at = |k: u32| start + (end - start) * f64::from(k) / f64::from(steps);
+            let bent = |k: u32| {
+                let bound = self.path.chord_deviation(at(k), at(k + 1));
+                bound > BENT * length_of_step(&self.path, at(k), at(k + 1))
+            };
+            if !(0..steps).any(bent) {
+                break;
+            }
+            steps *= 2;
+        }
+        steps
+    }
+
     fn walk(&self, start: Stop, end: f64, steps: u32) -> Vec<Stop> {
         let mut stops = Vec::with_capacity(steps as usize);
         let mut last = start;
@@ -122,7 +143,7 @@ impl FrameField {
                 if k == steps { end } else { start.t + (end - start.t) * f64::from(k) / f64::from(steps) };
             let jet = self.path.evaluate(t, Side::Before);
             let frame = reflect_twice(&last, jet.point, self.path.direction(t, Side::Before));
-            let walked = last.walked + last.point.distance(jet.point);
+            let walked = last.walked + length_of_step(&self.path, last.t, t);
             last = Stop { t, point: jet.point, frame, walked };
             stops.push(last);
         }
@@ -137,22 +158,41 @@ impl FrameField {
     /// The frame at `t`, at a corner of the side before or after.
     #[must_use]
     pub fn at(&self, t: f64, side: Side) -> Frame {
+        let domain = self.path.domain();
+        let t = t.clamp(domain.start, domain.end);
         let after = self.stops.partition_point(|stop| match side {
             Side::After => stop.t <= t,
             Side::Before => stop.t < t,
         });
         let from = &self.stops[after.saturating_sub(1)];
         let next = self.stops.get(after).filter(|next| next.t == t && side == Side::Before);
-        let (frame, walked) = if from.t == t {
-            (from.frame, from.walked)
-        } else if let Some(next) = next {
-            (next.frame, next.walked)
-        } else {
-            let jet = self.path.evaluate(t, side);
-            let frame = reflect_twice(from, jet.point, self.path.direction(t, side));
-            (frame, from.walked + from.point.distance(jet.point))
-        };
+        let stop = if from.t == t { Some(from) } else { next };
+        let frame = stop.map_or_else(
+            || {
+                let jet = self.path.evaluate(t, side);
+                reflect_twice(from, jet.point, self.path.direction(t, side))
+            },
+            |stop| stop.frame,
+        );
+        if self.turn == 0.0 {
+            return frame;
+        }
+        let walked = stop
+            .map_or_else(|| from.walked + length_of_step(&self.path, from.t, t.max(from.t)), |stop| stop.walked);
         frame.turned(self.turn * (walked / self.length()))
+    }
+
+    /// Turn about the path between two parameters, radians.
+    #[must_use]
+    pub fn turn_between(&self, from: f64, to: f64) -> f64 {
+        if self.turn == 0.0 { 0.0 } else { self.turn * ((self.walked_to(to) - self.walked_to(from)) / self.length()) }
+    }
+
+    /// Length of the path up to a parameter, metres.
+    fn walked_to(&self, t: f64) -> f64 {
+        let after = self.stops.partition_point(|stop| stop.t <= t);
+        let from = &self.stops[after.saturating_sub(1)];
+        if from.t >= t { from.walked } else { from.walked + length_of_step(&self.path, from.t, t) }
     }
 
     /// Turn about the path for each metre of it, radians.

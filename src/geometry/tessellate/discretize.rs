@@ -49,6 +49,7 @@ pub fn discretize(curve: &impl Curve, density: Density, limit: u64) -> Result<Ve
     stops.push(domain.end);
     let parameters = match density {
         Density::Tolerance(tolerance) => {
+            check(lower_estimate(curve, &stops, tolerance), limit)?;
             let mut all = vec![domain.start];
             for pair in stops.windows(2) {
                 all.extend(balanced(curve, (pair[0], pair[1]), tolerance, limit)?);
@@ -66,6 +67,21 @@ pub fn discretize(curve: &impl Curve, density: Density, limit: u64) -> Result<Ve
 
 fn check(needed: u64, limit: u64) -> Result<(), TessellateError> {
     if needed > limit { Err(TessellateError::TooMany { needed, limit }) } else { Ok(()) }
+}
+
+/// Fewer chords than will be needed, found at once so that what cannot be made is refused at once.
+///
+/// A chord over a part that deviates by d has to be cut into about the root of d / tolerance pieces. The
+/// bounds of long parts are up to six times what the curve does, so a quarter of the sum is safe.
+fn lower_estimate(curve: &impl Curve, stops: &[f64], tolerance: f64) -> u64 {
+    const PARTS: u32 = 16;
+    let mut chords = 0.0;
+    for pair in stops.windows(2) {
+        let at = |k: u32| pair[0] + (pair[1] - pair[0]) * (f64::from(k) / f64::from(PARTS));
+        let parts = (0..PARTS).map(|k| (curve.chord_deviation(at(k), at(k + 1)) / tolerance).sqrt());
+        chords += parts.sum::<f64>();
+    }
+    (chords / 4.0) as u64
 }
 
 /// `count` steps over the stops in proportion to their lengths, at least one for each.

@@ -56,8 +56,9 @@ const ON_AXIS: f64 = 1e-12;
 /// # Errors
 /// When the limit would be passed (before memory is taken), the profile encloses no area, or a cap fails.
 pub fn revolve(shape: &Revolution, detail: &Detail) -> Result<Tessellation, TessellateError> {
+    refuse_early(shape, detail)?;
     let plan = Plan::new(shape, detail)?;
-    let needed: u64 = plan.steps.windows(2).map(|pair| count(pair[0], pair[1])).sum();
+    let needed = plan.triangles();
     if needed > detail.triangle_limit {
         return Err(TessellateError::TooMany { needed, limit: detail.triangle_limit });
     }
@@ -67,6 +68,30 @@ pub fn revolve(shape: &Revolution, detail: &Detail) -> Result<Tessellation, Tess
     let mut mesh = builder.mesh;
     mesh.runs = vec![Run { origin: 0, end: mesh::index(mesh.triangles.len()) }];
     Ok(Tessellation { mesh, deviation: plan.deviation() })
+}
+
+/// Refuses a tolerance far below what the limit allows without cutting the profile so finely: the number of
+/// triangles is inverse to the tolerance, so a coarser plan tells it.
+fn refuse_early(shape: &Revolution, detail: &Detail) -> Result<(), TessellateError> {
+    /// Chords of a plan that costs nothing to speak of.
+    const FEW: u64 = 1024;
+    let SurfaceDensity::Tolerance(tolerance) = detail.density else { return Ok(()) };
+    let mut coarser = 1.0;
+    while coarser < 1e30 {
+        let density = SurfaceDensity::Tolerance(tolerance * coarser);
+        match Plan::new(shape, &Detail { density, triangle_limit: FEW, uv: false, ..*detail }) {
+            Ok(plan) => {
+                // Rings have at least four steps however coarse they are: a quarter is safe.
+                let needed = (plan.triangles() as f64 * coarser / 4.0) as u64;
+                let limit = detail.triangle_limit;
+                let passed = coarser > 1.0 && needed > limit;
+                return if passed { Err(TessellateError::TooMany { needed, limit }) } else { Ok(()) };
+            }
+            Err(TessellateError::TooMany { .. }) => coarser *= 64.0,
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
 }
 
 /// Profile and rings, before any vertex is made.
@@ -113,6 +138,10 @@ impl Plan {
             plan.steps[last] = plan.steps[0];
         }
         Ok(plan)
+    }
+
+    fn triangles(&self) -> u64 {
+        self.steps.windows(2).map(|pair| count(pair[0], pair[1])).sum()
     }
 
     fn radius(&self, index: usize) -> f64 {

@@ -34,6 +34,13 @@ pub struct Sweep {
 /// term of the next order.
 const MARGIN: f64 = 1.05;
 
+/// The share of the path's own bound that a chord must keep whatever the samples say. The bound holds for long
+/// chords too, and is up to six times what a curve does.
+const GUARD: f64 = 8.0;
+
+/// Radians by which the section may turn over one chord.
+const GREATEST_TWIST: f64 = 1.0;
+
 /// Carries a section into triangles. Anchor sources: the wall is 0, the first end 1, the last end 2.
 ///
 /// # Errors
@@ -98,7 +105,13 @@ impl Curve for Traced<'_> {
             return 0.0;
         }
         let (start, end) = (self.surface.section(from, Side::After), self.surface.section(to, Side::Before));
-        let mut deviation = 0.0_f64;
+        // Samples of a chord over whole turns see nothing: such a chord is judged by the path's own bound, and
+        // by how far the section turns on it.
+        let mut deviation = path.chord_deviation(from, to) / GUARD;
+        if self.surface.frames.turn_between(from, to).abs() > GREATEST_TWIST {
+            let reach = self.offsets.iter().map(|offset| offset.length()).fold(0.0, f64::max);
+            deviation = deviation.max(reach);
+        }
         for part in [0.25, 0.5, 0.75] {
             let middle = self.surface.section(from + (to - from) * part, Side::After);
             for offset in &self.offsets {
@@ -215,7 +228,7 @@ impl Plan {
             Density::Count(_) => discretize(&shape.path, along, limit)?,
             Density::Tolerance(_) => {
                 let traced = Traced { surface, offsets: spread(&profile) };
-                discretize(&traced, along, limit)?
+                discretize(&traced, along, limit / (2 * (profile.len() as u64 - 1)) + 1)?
             }
         };
         let path = clear_of_corners(surface, path, &profile);

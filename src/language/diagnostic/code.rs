@@ -155,6 +155,8 @@ codes! {
     TightBend = "K0809";
     /// polygons do not make a mesh
     BadMesh = "K0810";
+    /// positions cannot be stored as exactly as the tolerance asks
+    BeyondPrecision = "K0811";
 
     /// a file cannot be imported
     ImportFailed = "K0851";

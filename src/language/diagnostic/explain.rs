@@ -170,6 +170,9 @@ examples! {
         "" => "";
     BadMesh: "Polygons refer to points that are not there or have coordinates that are no numbers.",
         "" => "";
+    BeyondPrecision: "A glTF file holds positions in single precision: about seven digits. Far from the origin, or where the tolerance is very fine, rounding alone moves points by more than half the tolerance. Model near the origin and let a node carry the shape to its place, or write a coarser tolerance.",
+        "tolerance = 0.001\n[shape.a.sphere]\nradius = 1\ncenter = [30000, 0, 0]" =>
+        "tolerance = 0.001\n[shape.a.sphere]\nradius = 1\n[node.n]\nshape = \"a\"\nat = [30000, 0, 0]";
     ImportFailed: "A file is damaged or cut off. The message names its line and value. Export it again.",
         "" => "";
     ImportNote: "Something in an imported file was passed over or put right; the notes say what and where.",

@@ -1,0 +1,99 @@
+//! Limits, before and after meshes are made.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::RealizeError;
+use crate::geometry::mesh::{Mesh, Vertex};
+use crate::model::Limits;
+
+/// What a mesh takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Cost {
+    triangles: u64,
+    vertices: u64,
+    /// Bytes of the mesh in memory and in the file.
+    memory: u64,
+}
+
+/// Bytes of a triangle with its share of vertices (half a vertex each on a large smooth mesh), in memory and in
+/// the file.
+const BYTES_OF_TRIANGLE: u64 = 100;
+
+impl Cost {
+    pub(super) fn of(mesh: &Mesh) -> Self {
+        let (triangles, vertices) = (mesh.triangles.len() as u64, mesh.vertices.len() as u64);
+        let points = mesh.points.len() as u64;
+        let vertex = size_of::<Vertex>() as u64 + 32;
+        Self { triangles, vertices, memory: triangles * (12 + 12) + vertices * vertex + points * 24 }
+    }
+
+    pub(super) fn times(self, count: u64) -> Self {
+        Self {
+            triangles: self.triangles.saturating_mul(count),
+            vertices: self.vertices.saturating_mul(count),
+            memory: self.memory.saturating_mul(count),
+        }
+    }
+
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self {
+            triangles: self.triangles.saturating_add(other.triangles),
+            vertices: self.vertices.saturating_add(other.vertices),
+            memory: self.memory.saturating_add(other.memory),
+        }
+    }
+
+    fn against(self, limits: &Limits) -> [(&'static str, u64, u64); 3] {
+        [
+            ("triangles", self.triangles, limits.triangles),
+            ("vertices", self.vertices, limits.vertices),
+            ("bytes of memory", self.memory, limits.memory),
+        ]
+    }
+
+    /// Refuses what passes a limit by itself.
+    pub(super) fn check(self, limits: &Limits) -> Result<(), RealizeError> {
+        match self.against(limits).into_iter().find(|(_, needed, limit)| needed > limit) {
+            Some((what, needed, limit)) => Err(RealizeError::Limit { what, needed, limit }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The most triangles of one surface, known before it is made.
+pub(super) fn triangle_limit(limits: &Limits) -> u64 {
+    limits.triangles.min(limits.memory / BYTES_OF_TRIANGLE)
+}
+
+/// A surface that was refused for its triangles, said in terms of the limit that was meant.
+pub(super) fn in_terms_of(needed: u64, limits: &Limits) -> RealizeError {
+    if triangle_limit(limits) < limits.triangles {
+        let needed = needed.saturating_mul(BYTES_OF_TRIANGLE);
+        RealizeError::Limit { what: "bytes of memory", needed, limit: limits.memory }
+    } else {
+        RealizeError::Limit { what: "triangles", needed, limit: limits.triangles }
+    }
+}
+
+/// What all shapes take together, counted on every thread. Whether a limit is passed depends on the sum alone
+/// and not on the order; once it is passed nothing more needs to be made.
+#[derive(Debug, Default)]
+pub(super) struct Spent([AtomicU64; 3]);
+
+impl Spent {
+    pub(super) fn add(&self, cost: Cost) {
+        for (sum, part) in self.0.iter().zip([cost.triangles, cost.vertices, cost.memory]) {
+            sum.fetch_add(part, Ordering::Relaxed);
+        }
+    }
+
+    /// Refuses when the sum passes a limit.
+    pub(super) fn check(&self, limits: &Limits) -> Result<(), RealizeError> {
+        let [triangles, vertices, memory] = [0, 1, 2].map(|part| self.0[part].load(Ordering::Relaxed));
+        let cost = Cost { triangles, vertices, memory };
+        match cost.against(limits).into_iter().find(|(_, spent, limit)| spent > limit) {
+            Some((what, _, limit)) => Err(RealizeError::Together { what, limit }),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! The tolerance: how the error follows it, and with how few triangles it is kept.
+
+use core::f64::consts::PI;
+
+use kiln::geometry::number::ln;
+
+use super::bake;
+
+const SPHERE: &str = "[shape.a.sphere]\nradius = 1";
+const TORUS: &str = "[shape.a.revolve]\nprofile = { circle = { radius = 0.3, center = [1, 0] } }";
+const COIL: &str =
+    "[shape.a.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = { helix = { radius = 1, pitch = 0.5, turns = 1 } }";
+
+/// The slope of a line fitted to logarithms.
+fn exponent(points: &[(f64, f64)]) -> f64 {
+    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (ln(*x), ln(*y))).collect();
+    let count = logs.len() as f64;
+    let (x, y) = logs.iter().fold((0.0, 0.0), |sum, (x, y)| (sum.0 + x / count, sum.1 + y / count));
+    let across: f64 = logs.iter().map(|(a, b)| (a - x) * (b - y)).sum();
+    across / logs.iter().map(|(a, _)| (a - x) * (a - x)).sum::<f64>()
+}
+
+/// Area and volume err by the second power of the edges' length, so by the first of the tolerance.
+#[test]
+fn area_and_volume_converge_with_the_tolerance() {
+    let coil = (4.0 * PI * PI + 0.25_f64).sqrt();
+    for (text, area, volume) in [
+        (SPHERE, 4.0 * PI, 4.0 * PI / 3.0),
+        (TORUS, 4.0 * PI * PI * 0.3, 2.0 * PI * PI * 0.09),
+        (COIL, 2.0 * PI * 0.1 * coil + 2.0 * PI * 0.01, PI * 0.01 * coil),
+        (
+            "[shape.a.extrude]\nheight = 1\nprofile = { circle = { radius = 1 } }\nholes = [{ circle = { radius = 0.5 } }]",
+            2.0 * PI * 0.75 + 3.0 * PI,
+            0.75 * PI,
+        ),
+    ] {
+        let (mut areas, mut volumes) = (Vec::new(), Vec::new());
+        for k in 0..=6 {
+            let tolerance = 1e-2 / f64::from(1 << k).powi(2) * if k == 6 { 4.096 } else { 1.0 };
+            let facts = bake(&format!("tolerance = {tolerance}\n{text}")).only().facts.clone();
+            areas.push((tolerance, (facts.area - area).abs()));
+            volumes.push((tolerance, (facts.volume.expect("closed") - volume).abs()));
+        }
+        assert!(areas[0].0 / areas[6].0 >= 999.0, "three decades");
+        assert!(exponent(&areas) >= 0.9, "{text}: area {}: {areas:?}", exponent(&areas));
+        assert!(exponent(&volumes) >= 0.9, "{text}: volume {}: {volumes:?}", exponent(&volumes));
+    }
+}
+
+/// The optimum: the integral of sqrt |K| over the surface, by twice the tolerance.
+#[test]
+fn doubly_curved_shapes_need_few_triangles() {
+    // On the sphere K = 1; on the torus the integral of sqrt |cos t / (r (R + r cos t))| (R + r cos t) r by both angles.
+    let torus: f64 = (0..100_000)
+        .map(|k| {
+            let t = 2.0 * PI * (f64::from(k) + 0.5) / 100_000.0;
+            let cosine = kiln::geometry::number::cos(t);
+            (cosine.abs() * 0.3 * (1.0 + 0.3 * cosine)).sqrt() * 2.0 * PI / 100_000.0
+        })
+        .sum::<f64>()
+        * 2.0
+        * PI;
+    for (text, integral) in [(SPHERE, 4.0 * PI), (TORUS, torus)] {
+        for tolerance in [1e-3, 1e-4, 1e-5] {
+            let baked = bake(&format!("tolerance = {tolerance}\n{text}"));
+            let optimum = integral / (2.0 * tolerance);
+            let ratio = baked.only().facts.triangles as f64 / optimum;
+            assert!(ratio <= 1.5, "{text} at {tolerance}: {ratio:.3} of the optimum");
+            assert!(ratio >= 0.8, "{text} at {tolerance}: fewer than can be, {ratio:.3}");
+        }
+    }
+}
+
+/// A fixed grid is exactly as fine as it is written.
+#[test]
+fn segments_give_a_grid() {
+    for (text, triangles) in [
+        ("[shape.a]\nsegments = [12, 6]\n[shape.a.sphere]\nradius = 1", 12 * 6 * 2 - 2 * 12),
+        ("[shape.a]\nsegments = [8, 5]\n[shape.a.revolve]\nprofile = { circle = { radius = 0.3, center = [1, 0] } }", 80),
+        (
+            "[shape.a]\nsegments = [7, 3]\n[shape.a.extrude]\nheight = 1\nprofile = { circle = { radius = 1 } }",
+            7 * 3 * 2 + 2 * 5,
+        ),
+        (
+            "[shape.a]\nsegments = [6, 9]\n[shape.a.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = { circle = { radius = 1 } }",
+            6 * 9 * 2,
+        ),
+    ] {
+        let baked = bake(text);
+        assert_eq!(baked.only().facts.triangles, triangles, "{text}");
+        let deviation = baked.only().deviation;
+        assert!(deviation.tolerance.is_none() && deviation.bound >= deviation.measured.expect("asked for"), "{text}: {deviation:?}");
+    }
+}
+
+/// Without a tolerance a shape is as fine as its size: the diagonal of its box by 2000.
+#[test]
+fn the_default_tolerance_follows_the_size() {
+    for size in [1e-3, 1.0, 1e3] {
+        let baked = bake(&format!("[shape.a.sphere]\nradius = {size}"));
+        let deviation = baked.only().deviation;
+        let expected = size * 2.0 * 3.0_f64.sqrt() / 2000.0;
+        let tolerance = deviation.tolerance.expect("a tolerance");
+        assert!((tolerance / expected - 1.0).abs() < 1e-6, "{tolerance} instead of {expected}");
+    }
+    let counts = [1e-3, 1.0, 1e3].map(|size| bake(&format!("[shape.a.sphere]\nradius = {size}")).only().facts.triangles);
+    assert!(counts.iter().all(|count| *count == counts[0]), "{counts:?}");
+}
+
+/// A finer tolerance than single precision can hold at this place is told, not promised.
+#[test]
+fn rounding_counts_in_the_bound() {
+    let far = bake("tolerance = 0.001\n[shape.a.sphere]\nradius = 1\ncenter = [30000, 0, 0]");
+    let deviation = far.only().deviation;
+    assert!(deviation.measured.expect("asked for") <= deviation.bound, "{deviation:?}");
+    assert!(deviation.bound > 0.001, "positions near 30000 are rounded by up to 0.001: {deviation:?}");
+    assert_eq!(far.compiled.warnings.len(), 1, "{}", far.compiled.warnings);
+    let near = bake("tolerance = 0.001\n[shape.a.sphere]\nradius = 1\ncenter = [3000, 0, 0]");
+    assert!(near.only().deviation.bound <= 0.001, "{:?}", near.only().deviation);
+    assert!(near.compiled.warnings.is_empty());
+}

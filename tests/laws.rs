@@ -1,0 +1,105 @@
+//! Laws that hold for every curve and every surface, whatever its kind: reusable, seeded, stated once.
+
+mod curves;
+mod surfaces;
+
+use kiln::compile::{self, Options};
+use kiln::geometry::curve::AnyCurve;
+use kiln::language::Document;
+use kiln::language::source::MemoryFiles;
+
+/// Numbers that are the same in every run (xorshift, G. Marsaglia, 2003).
+#[derive(Clone, Copy)]
+pub(crate) struct Dice(u64);
+
+impl Dice {
+    /// Numbers that depend on `seed` alone.
+    pub(crate) fn new(seed: u64) -> Self {
+        let mut dice = Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+        for _ in 0..8 {
+            dice.bits();
+        }
+        dice
+    }
+
+    fn bits(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+
+    /// A number from `low` to `high`.
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+        let unit = (self.bits() >> 11) as f64 / (1u64 << 53) as f64;
+        low + (high - low) * unit
+    }
+
+    /// A whole number below `sides`.
+    pub(crate) fn roll(&mut self, sides: usize) -> usize {
+        usize::try_from(self.bits() % sides as u64).unwrap_or(0)
+    }
+}
+
+/// One of each kind of curve, plane and in space, open and closed, with and without corners, nested too.
+const CURVES: &str = r#"
+line.line = { from = [1, 2, 3], to = [-4, 0.5, 1] }
+polyline.polyline = { points = [[0, 0], [2, 0.5], [3, 3], [1, 1, 2]] }
+polygon.polyline = { points = [[0, 0], [2, 0.5], [3, 3], [1, 2]], closed = true }
+straight.polyline = { points = [[0, 0], [1, 0], [2, 0], [2, 1]] }
+circle.circle = { radius = 1.5, center = [3, -1] }
+ellipse.ellipse = { radii = [3, 0.4], center = [0.5, 2] }
+arc.arc = { center = [1, 1], radius = 2, from = 30, to = 250 }
+clockwise.arc = { center = [1, 1], radius = 0.01, from = 10, to = -100 }
+wire.arc = { center = [0.02, 0.01], radius = 0.04, from = 10, to = -100 }
+three.arc = { points = [[0, 0, 0], [1, 2, 1], [3, 0, -1]] }
+helix.helix = { radius = 1, pitch = 0.3, turns = 2.3 }
+cone.helix = { radius = 1, end-radius = 0.2, pitch = -0.7, turns = 1.7 }
+uniform.natural-spline = { points = [[0, 0], [3, 4, 1], [-1, 4], [-4, 0, 2], [-4, -3]], parameters = "uniform" }
+chordal.natural-spline = { points = [[0, 0], [3, 4, 1], [-1, 4], [-4, 0, 2], [-4, -3]] }
+given.natural-spline = { points = [[0, 0], [3, 4, 1], [-1, 4]], parameters = [-1, 0.25, 7] }
+ring.natural-spline = { points = [[0, 0], [3, 4, 1], [-1, 4], [-4, 0, 2]], closed = true, parameters = "centripetal" }
+two.natural-spline = { points = [[0, 0], [3, 4, 1]] }
+cubic.bezier = { points = [[0, 0], [1, 2, 1], [3, -1, 0], [4, 1, 1], [5, 3, 1], [5, 4], [6, 2]] }
+smooth.bezier = { degree = 2, points = [[0, 0], [1, 1], [2, 0], [3, -1], [4, 0]] }
+high.bezier = { degree = 9, points = [[0, 0], [1, 3], [2, -3], [3, 4], [4, -1], [5, 0], [6, 1], [7, 1], [8, 0], [9, 2, 1]] }
+stopped.bezier = { points = [[0, 0], [0, 0], [3, 1], [4, 4]] }
+mixed.path = { start = [0, 0], segments = [
+  { line = [[1, 0], [2, 1], [2, 2]] }, { arc = { through = [1.5, 3], to = [1, 2.5] } },
+  { natural-spline = [[0, 2], [-1, 1], [-1, 0.5]] }, { quadratic = [[-1, 0], [-0.5, 0]] },
+  { bezier = [[0, -1], [1, -1], [1, 0], [2, 2], [3, 1], [3, -1]] }, { arc = { center = [3, -2], angle = -77 } } ] }
+rounded.path = { start = [1, 0], closed = true, segments = [
+  { line = [[3, 0]] }, { arc = { center = [3, 1], angle = 90 } }, { line = [[4, 2]] },
+  { arc = { center = [3, 2], angle = 90 } }, { line = [[2.3, 3], [1.7, 3], [1, 3]] } ] }
+back.reverse = { of = "mixed" }
+again.reverse = { of = { reverse = { of = "mixed" } } }
+moved.transform = { of = "mixed", scale = 0.37, rotate = [10, 20, 70], at = [5, 5, 5] }
+squeezed.transform = { of = "back", scale = [3, 0.2, 1], rotate = [0, 0, 33] }
+"#;
+
+/// The curves of the list, each with its name.
+pub(crate) fn curves() -> Vec<(String, AnyCurve)> {
+    let text = format!("[shape.a.sphere]\nradius = 1\n[curve]\n{CURVES}");
+    let text = joined(&text);
+    let files = MemoryFiles::new().with("laws.toml", text.as_bytes());
+    let document = Document::load("laws.toml", &files).unwrap_or_else(|found| panic!("{found}"));
+    let (spec, _) = document.spec(None, &[]).unwrap_or_else(|found| panic!("{found}"));
+    let curve = |name: &String| {
+        let curve = compile::curve(&document, &files, &Options::default(), name);
+        let curve = curve.unwrap_or_else(|found| panic!("{found}")).expect("it is defined");
+        (name.clone(), curve)
+    };
+    spec.curves.keys().map(curve).collect()
+}
+
+/// TOML 1.0 keeps an inline table on one line; the list above does not.
+fn joined(text: &str) -> String {
+    let mut joined = String::new();
+    for line in text.lines() {
+        if !line.starts_with("  ") {
+            joined.push('\n');
+        }
+        joined.push_str(line);
+    }
+    joined
+}
