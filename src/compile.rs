@@ -122,7 +122,9 @@ fn refusals(built: &Built, errors: Vec<(ShapeHandle, RealizeError)>) -> Vec<Diag
 fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnostic {
     let name = &built.model.shape(shape).name;
     let (code, help) = match error {
-        RealizeError::Limit { .. } | RealizeError::Together { .. } | RealizeError::Tessellate(TessellateError::TooMany { .. }) => (
+        RealizeError::Limit { .. }
+        | RealizeError::Together { .. }
+        | RealizeError::Tessellate(TessellateError::TooMany { .. }) => (
             Code::LimitPassed,
             "write a coarser `tolerance`, fewer `segments`, or fewer copies; `[limits]` can only be lowered here",
         ),
@@ -153,7 +155,10 @@ fn beyond_tolerance(scene: &scene::Scene, shapes: &[ShapeHandle], built: &Built)
         let bound = geometry.deviation.bound;
         let rounding = single_rounding(Bounds::of_points(geometry.mesh.points.iter().copied()).reach());
         if bound <= tolerance && bound + rounding > tolerance {
-            return Some(imprecise(&geometry.name, (bound, rounding, tolerance)).at(place(built, *shape), "this shape"));
+            return Some(
+                imprecise(&geometry.name, (bound, rounding, tolerance))
+                    .at(place(built, *shape), "this shape"),
+            );
         }
         (bound > tolerance * (1.0 + 1e-9)).then(|| {
             let sampled = if geometry.deviation.evidence == Evidence::Sampled { " (sampled)" } else { "" };
@@ -189,7 +194,11 @@ fn unwritable(error: &SceneError, built: &Built) -> Diagnostic {
     };
     let span = shape.and_then(|index| built.places.get(index).copied()).unwrap_or(Span::NONE);
     let report = Diagnostic::error(code, error.to_string()).at(span, "this shape");
-    if let SceneError::NoUv(..) = error { report.help("leave `uv = \"none\"` out, or give it a material without textures") } else { report }
+    if let SceneError::NoUv(..) = error {
+        report.help("leave `uv = \"none\"` out, or give it a material without textures")
+    } else {
+        report
+    }
 }
 
 fn measured(

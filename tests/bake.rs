@@ -70,7 +70,8 @@ pub(crate) fn bake(text: &str) -> Baked {
 
 fn hold_against(glb: &Glb, name: &str, reported: &ShapeFacts) {
     let shows = |mesh: &&serde_json::Value| {
-        mesh["name"] == *name || mesh["name"].as_str().is_some_and(|full| full.starts_with(&format!("{name}.")))
+        mesh["name"] == *name
+            || mesh["name"].as_str().is_some_and(|full| full.starts_with(&format!("{name}.")))
     };
     let mesh = glb.list("meshes").iter().find(shows).unwrap_or_else(|| panic!("no mesh shows {name}"));
     let mesh = glb.named(mesh["name"].as_str().expect("meshes have names"));
@@ -79,7 +80,12 @@ fn hold_against(glb: &Glb, name: &str, reported: &ShapeFacts) {
     assert_eq!(facts.vertices, mesh.positions.len() as u64, "{name}");
     assert_eq!((facts.points, facts.euler), (found.points as u64, found.euler), "{name}");
     assert_eq!((facts.closed, facts.boundary_edges), (found.closed, found.boundary as u64), "{name}");
-    assert!((facts.area - found.area).abs() <= 1e-12 * found.area, "{name}: area {}, {}", facts.area, found.area);
+    assert!(
+        (facts.area - found.area).abs() <= 1e-12 * found.area,
+        "{name}: area {}, {}",
+        facts.area,
+        found.area
+    );
     assert_eq!(facts.volume.is_some(), found.closed, "{name}");
     if let Some(volume) = facts.volume {
         let size = found.area * found.area.sqrt();

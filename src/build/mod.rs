@@ -55,10 +55,6 @@ pub fn curve(spec: &Spec, name: &str, files: &dyn Files) -> Result<Option<AnyCur
     if builder.reports.is_empty() { Ok(curve) } else { Err(builder.reports) }
 }
 
-/// Most memory that a triangle takes from tessellation to report, its half of a vertex included: 60 bytes of
-/// exact mesh, 28 of output, 44 while topology is measured, and what allocation adds.
-const TRIANGLE_BYTES: u64 = 160;
-
 /// The model in the making. A definition that failed is `None` in its map and is not tried again.
 struct Builder<'a> {
     spec: &'a Spec,
@@ -84,8 +80,9 @@ impl<'a> Builder<'a> {
             images: Vec::new(),
             nodes: Vec::new(),
             limits: Limits {
-                triangles: spec.limits.triangles.min(spec.limits.memory / TRIANGLE_BYTES),
+                triangles: spec.limits.triangles,
                 vertices: spec.limits.vertices,
+                memory: spec.limits.memory,
             },
         };
         Self {

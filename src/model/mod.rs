@@ -45,10 +45,12 @@ pub struct Node {
 /// The most that may be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Triangles of the asset, those too that the memory allowed can hold.
+    /// Triangles of the asset.
     pub triangles: u64,
     /// Vertices of the asset.
     pub vertices: u64,
+    /// Bytes of memory.
+    pub memory: u64,
 }
 
 /// An asset, exactly.

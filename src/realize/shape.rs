@@ -8,11 +8,7 @@ use super::{Options, RealizeError};
 use crate::geometry::mesh;
 use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
 use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex};
-<<<<<<< HEAD
-use crate::geometry::number::single_rounding;
-=======
 use crate::geometry::number::{Bounds, single_rounding};
->>>>>>> tests
 use crate::geometry::tessellate::{
     Detail, Deviation, SurfaceDensity, TessellateError, Tessellation, cuboid, extrude, revolve, sweep,
 };
@@ -51,7 +47,11 @@ impl Inherited {
     /// Behind a map that stretches lengths.
     fn within(self, map: &DAffine3) -> Self {
         let stretch = stretch(&map.matrix3);
-        Self { tolerance: self.tolerance.map(|tolerance| tolerance / stretch), rounding: self.rounding / stretch, ..self }
+        Self {
+            tolerance: self.tolerance.map(|tolerance| tolerance / stretch),
+            rounding: self.rounding / stretch,
+            ..self
+        }
     }
 }
 
@@ -102,7 +102,11 @@ impl<'a> Maker<'a> {
         Ok(made)
     }
 
-    fn leaf(&self, shape: &Shape, Inherited { tolerance, rounding, uv }: Inherited) -> Result<Made, RealizeError> {
+    fn leaf(
+        &self,
+        shape: &Shape,
+        Inherited { tolerance, rounding, uv }: Inherited,
+    ) -> Result<Made, RealizeError> {
         let stretch = stretch(&shape.options.placement.matrix3);
         let tolerance = self.tolerance(shape, tolerance);
         // What rounding will add is taken off beforehand, as long as it leaves half.
@@ -110,11 +114,7 @@ impl<'a> Maker<'a> {
         let detail = Detail {
             density: match shape.options.density {
                 Some(grid) => SurfaceDensity::Grid { u: grid.u, v: grid.v },
-<<<<<<< HEAD
-                None => SurfaceDensity::Tolerance(before_rounding(shape, tolerance) / stretch),
-=======
                 None => SurfaceDensity::Tolerance(aim / stretch),
->>>>>>> tests
             },
             crease_angle: match shape.options.smoothing {
                 Smoothing::Auto => shape.options.crease_angle,
@@ -136,25 +136,23 @@ impl<'a> Maker<'a> {
             Recipe::Revolution(revolution) => revolve(revolution, &detail),
             Recipe::Extrusion(extrusion) => extrude(extrusion, &detail),
             Recipe::Sweep(path) => sweep(path, &detail),
-            Recipe::Polygons { mesh, materials } => return self.finished(shape, self.polygons(shape, mesh, materials)?),
+            Recipe::Polygons { mesh, materials } => {
+                return self.finished(shape, self.polygons(shape, mesh, materials)?);
+            }
             Recipe::Assembly(_) => Ok(Tessellation { mesh: Mesh::default(), deviation: Deviation::NONE }),
         };
-<<<<<<< HEAD
-        // Boxes and polygons have one normal a face already.
-        let curved = matches!(shape.recipe, Recipe::Revolution(_) | Recipe::Extrusion(_) | Recipe::Sweep(_));
-        let flat = curved && shape.options.smoothing == Smoothing::Flat;
-        self.within_limits(if flat { flatten(made) } else { made })
-=======
         let made = made.map_err(|error| match error {
             TessellateError::TooMany { needed, .. } => limit::in_terms_of(needed, &self.model.limits),
             error => error.into(),
         })?;
         self.finished(shape, surface(made))
->>>>>>> tests
     }
 
     fn finished(&self, shape: &Shape, made: Made) -> Result<Made, RealizeError> {
-        let made = if shape.options.smoothing == Smoothing::Flat { flatten(made) } else { made };
+        // Boxes and polygons have one normal a face already.
+        let curved = matches!(shape.recipe, Recipe::Revolution(_) | Recipe::Extrusion(_) | Recipe::Sweep(_));
+        let flat = curved && shape.options.smoothing == Smoothing::Flat;
+        let made = if flat { flatten(made) } else { made };
         Cost::of(&made.mesh).check(&self.model.limits)?;
         Ok(made)
     }
@@ -299,14 +297,6 @@ fn flatten(mut made: Made) -> Made {
     }
     mesh.vertices = vertices;
     made
-}
-
-/// What is left of a tolerance when positions are rounded to single precision, half of it at least.
-fn before_rounding(shape: &Shape, tolerance: f64) -> f64 {
-    let placement = &shape.options.placement;
-    let reach = super::source::extent(&shape.recipe).reach() * stretch(&placement.matrix3);
-    let rounding = single_rounding(reach + placement.translation.length());
-    (tolerance - rounding).max(tolerance / 2.0)
 }
 
 /// Turns and scales a finished shape from the document's unit and axes to metres with y up.

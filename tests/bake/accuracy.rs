@@ -8,8 +8,7 @@ use super::bake;
 
 const SPHERE: &str = "[shape.a.sphere]\nradius = 1";
 const TORUS: &str = "[shape.a.revolve]\nprofile = { circle = { radius = 0.3, center = [1, 0] } }";
-const COIL: &str =
-    "[shape.a.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = { helix = { radius = 1, pitch = 0.5, turns = 1 } }";
+const COIL: &str = "[shape.a.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = { helix = { radius = 1, pitch = 0.5, turns = 1 } }";
 
 /// The slope of a line fitted to logarithms.
 fn exponent(points: &[(f64, f64)]) -> f64 {
@@ -76,7 +75,10 @@ fn doubly_curved_shapes_need_few_triangles() {
 fn segments_give_a_grid() {
     for (text, triangles) in [
         ("[shape.a]\nsegments = [12, 6]\n[shape.a.sphere]\nradius = 1", 12 * 6 * 2 - 2 * 12),
-        ("[shape.a]\nsegments = [8, 5]\n[shape.a.revolve]\nprofile = { circle = { radius = 0.3, center = [1, 0] } }", 80),
+        (
+            "[shape.a]\nsegments = [8, 5]\n[shape.a.revolve]\nprofile = { circle = { radius = 0.3, center = [1, 0] } }",
+            80,
+        ),
         (
             "[shape.a]\nsegments = [7, 3]\n[shape.a.extrude]\nheight = 1\nprofile = { circle = { radius = 1 } }",
             7 * 3 * 2 + 2 * 5,
@@ -89,7 +91,10 @@ fn segments_give_a_grid() {
         let baked = bake(text);
         assert_eq!(baked.only().facts.triangles, triangles, "{text}");
         let deviation = baked.only().deviation;
-        assert!(deviation.tolerance.is_none() && deviation.bound >= deviation.measured.expect("asked for"), "{text}: {deviation:?}");
+        assert!(
+            deviation.tolerance.is_none() && deviation.bound >= deviation.measured.expect("asked for"),
+            "{text}: {deviation:?}"
+        );
     }
 }
 
@@ -103,7 +108,8 @@ fn the_default_tolerance_follows_the_size() {
         let tolerance = deviation.tolerance.expect("a tolerance");
         assert!((tolerance / expected - 1.0).abs() < 1e-6, "{tolerance} instead of {expected}");
     }
-    let counts = [1e-3, 1.0, 1e3].map(|size| bake(&format!("[shape.a.sphere]\nradius = {size}")).only().facts.triangles);
+    let counts = [1e-3, 1.0, 1e3]
+        .map(|size| bake(&format!("[shape.a.sphere]\nradius = {size}")).only().facts.triangles);
     assert!(counts.iter().all(|count| *count == counts[0]), "{counts:?}");
 }
 

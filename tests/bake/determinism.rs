@@ -45,7 +45,10 @@ fn any_number_of_threads_gives_the_same_errors() {
     let mut text = String::from("[limits]\ntriangles = 5000\n");
     for k in 0..12 {
         let tolerance = [0.1, 1e-9, 0.01][k % 3];
-        text.push_str(&format!("[shape.s{k}]\ntolerance = {tolerance}\n[shape.s{k}.sphere]\nradius = {}\n", k + 1));
+        text.push_str(&format!(
+            "[shape.s{k}]\ntolerance = {tolerance}\n[shape.s{k}.sphere]\nradius = {}\n",
+            k + 1
+        ));
     }
     let refuse = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");

@@ -38,9 +38,11 @@ fn included_definitions_are_as_if_written_here() {
     let text = "include = [\"parts/part.toml\"]\n[shape.a]\nmaterial = \"clay\"\n[shape.a.revolve]\nprofile = \"ring\"\n";
     let files = inputs().with("spec.toml", text).with("parts/part.toml", part);
     let document = Document::load("spec.toml", &files).unwrap_or_else(|found| panic!("{found}"));
-    let included = kiln::compile(&document, &files, &options(None, &[])).unwrap_or_else(|found| panic!("{found}"));
+    let included =
+        kiln::compile(&document, &files, &options(None, &[])).unwrap_or_else(|found| panic!("{found}"));
     let (_, rest) = text.split_once('\n').expect("two lines");
-    let written = compile(&format!("{part}{rest}"), &options(None, &[])).unwrap_or_else(|found| panic!("{found}"));
+    let written =
+        compile(&format!("{part}{rest}"), &options(None, &[])).unwrap_or_else(|found| panic!("{found}"));
     assert_eq!(included.bytes, written.bytes);
 }
 
@@ -60,7 +62,10 @@ fn units_and_axes_convert() {
     let (one, two) = (plain.only(), other.only());
     let (a, b) = (one.facts.bounds.expect("points"), two.facts.bounds.expect("points"));
     for axis in 0..3 {
-        assert!((a.min[axis] - b.min[axis]).abs() < 2e-6 && (a.max[axis] - b.max[axis]).abs() < 2e-6, "{a:?} {b:?}");
+        assert!(
+            (a.min[axis] - b.min[axis]).abs() < 2e-6 && (a.max[axis] - b.max[axis]).abs() < 2e-6,
+            "{a:?} {b:?}"
+        );
     }
     assert_eq!(one.facts.triangles, two.facts.triangles);
     assert_near(two.facts.area, one.facts.area, 1e-6);
@@ -110,7 +115,10 @@ fn a_shape_in_another_material_shares_its_vertices() {
     assert_eq!(baked.glb.list("nodes")[1]["mesh"], baked.glb.list("nodes")[2]["mesh"]);
     let materials = baked.glb.list("materials");
     assert_eq!(materials[0]["name"], "red");
-    assert_eq!(materials[1]["pbrMetallicRoughness"]["baseColorFactor"], serde_json::json!([0.0, 0.0, 1.0, 1.0]));
+    assert_eq!(
+        materials[1]["pbrMetallicRoughness"]["baseColorFactor"],
+        serde_json::json!([0.0, 0.0, 1.0, 1.0])
+    );
 }
 
 #[test]
@@ -169,7 +177,8 @@ fn tangents_are_written_if_and_only_if_a_normal_texture_shows() {
         "[material.x]\n[material.bumpy]\nnormal-texture = \"bumps.png\"\n{shape}[node.one]\nshape = \"a\"\n[node.two]\nshape = \"a\"\nmaterial = \"bumpy\""
     );
     let baked = bake(&text);
-    let has = |mesh: usize| baked.glb.list("meshes")[mesh]["primitives"][0]["attributes"].get("TANGENT").is_some();
+    let has =
+        |mesh: usize| baked.glb.list("meshes")[mesh]["primitives"][0]["attributes"].get("TANGENT").is_some();
     assert_eq!((has(0), has(1)), (false, true));
     let refused = compile(
         "[material.x]\nnormal-texture = \"bumps.png\"\n[shape.a]\nmaterial = \"x\"\nuv = \"none\"\n[shape.a.sphere]\nradius = 1",
@@ -177,7 +186,11 @@ fn tangents_are_written_if_and_only_if_a_normal_texture_shows() {
     );
     // Without texture coordinates there are no tangents; the file is valid all the same, and it is said.
     let compiled = refused.unwrap_or_else(|found| panic!("{found}"));
-    assert!(compiled.warnings.iter().any(|warning| warning.message.contains("texture")), "{}", compiled.warnings);
+    assert!(
+        compiled.warnings.iter().any(|warning| warning.message.contains("texture")),
+        "{}",
+        compiled.warnings
+    );
 }
 
 #[test]
@@ -189,7 +202,12 @@ fn materials_are_written_as_they_are_said() {
     let material = &baked.glb.list("materials")[0];
     let pbr = &material["pbrMetallicRoughness"];
     assert_eq!((pbr["metallicFactor"].as_f64(), pbr["roughnessFactor"].as_f64()), (Some(0.25), Some(0.5)));
-    let color: Vec<f64> = pbr["baseColorFactor"].as_array().expect("four").iter().filter_map(serde_json::Value::as_f64).collect();
+    let color: Vec<f64> = pbr["baseColorFactor"]
+        .as_array()
+        .expect("four")
+        .iter()
+        .filter_map(serde_json::Value::as_f64)
+        .collect();
     assert_eq!(color[..3], [1.0, 0.0, 0.0]);
     assert_near(color[3], 128.0 / 255.0, 1e-6);
     assert_eq!(material["emissiveFactor"], serde_json::json!([0.5, 0.0, 1.0]));
@@ -211,7 +229,8 @@ fn assertions_that_hold_stand_in_the_report() {
 #[test]
 fn without_a_report_nothing_is_measured() {
     let options = Options { no_report: true, ..options(None, &[]) };
-    let compiled = compile("[shape.a.box]\nsize = [1, 1, 1]", &options).unwrap_or_else(|found| panic!("{found}"));
+    let compiled =
+        compile("[shape.a.box]\nsize = [1, 1, 1]", &options).unwrap_or_else(|found| panic!("{found}"));
     assert!(compiled.report.is_none());
     let measured = bake("[shape.a.box]\nsize = [1, 1, 1]");
     assert_eq!(compiled.bytes, measured.compiled.bytes, "measuring changes nothing");
@@ -220,7 +239,9 @@ fn without_a_report_nothing_is_measured() {
 #[test]
 fn limits_count_the_whole_asset() {
     let spheres = |count: usize| {
-        (0..count).map(|k| format!("[shape.s{k}]\nsegments = [16, 8]\n[shape.s{k}.sphere]\nradius = 1\n")).collect::<String>()
+        (0..count)
+            .map(|k| format!("[shape.s{k}]\nsegments = [16, 8]\n[shape.s{k}.sphere]\nradius = 1\n"))
+            .collect::<String>()
     };
     let triangles = 16 * 7 * 2;
     let allowed = format!("[limits]\ntriangles = {}\n{}", 3 * triangles, spheres(3));

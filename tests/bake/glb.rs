@@ -183,8 +183,12 @@ impl Glb {
         let written = &self.list("accessors")[accessor];
         for axis in 0..3 {
             let column = || rows.iter().map(|row| row[axis]);
-            let (min, max) = (column().fold(f64::INFINITY, f64::min), column().fold(f64::NEG_INFINITY, f64::max));
-            assert_eq!((written["min"][axis].as_f64(), written["max"][axis].as_f64()), (Some(min), Some(max)));
+            let (min, max) =
+                (column().fold(f64::INFINITY, f64::min), column().fold(f64::NEG_INFINITY, f64::max));
+            assert_eq!(
+                (written["min"][axis].as_f64(), written["max"][axis].as_f64()),
+                (Some(min), Some(max))
+            );
         }
     }
 

@@ -23,7 +23,9 @@ fn folder(count: usize) -> Option<PathBuf> {
 
 fn run(path: &str, bytes: Vec<u8>) -> Result<Compiled, Diagnostics> {
     let text = if path.ends_with(".png") {
-        format!("[material.x]\ncolor-texture = \"{path}\"\n[shape.a]\nmaterial = \"x\"\n[shape.a.box]\nsize = [1, 1, 1]\n")
+        format!(
+            "[material.x]\ncolor-texture = \"{path}\"\n[shape.a]\nmaterial = \"x\"\n[shape.a.box]\nsize = [1, 1, 1]\n"
+        )
     } else {
         format!("[shape.a.import]\nfile = \"{path}\"\n")
     };
@@ -87,8 +89,10 @@ fn broken_files_of_other_programs_are_refused_or_read() {
     let Some(folder) = folder(60) else { return };
     let mut tried = 0;
     for kind in ["png/bad", "png/valid", "obj/bad", "obj", "stl"] {
-        let mut paths: Vec<PathBuf> =
-            std::fs::read_dir(folder.join(kind)).expect("a folder").map(|entry| entry.expect("it is read").path()).collect();
+        let mut paths: Vec<PathBuf> = std::fs::read_dir(folder.join(kind))
+            .expect("a folder")
+            .map(|entry| entry.expect("it is read").path())
+            .collect();
         paths.sort();
         for path in paths.into_iter().filter(|path| path.is_file()) {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();

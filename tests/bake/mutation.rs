@@ -16,8 +16,10 @@ fn seeds() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("specs");
     let mut seeds = Vec::new();
     for folder in ["built", "imported", "swept", "turned"] {
-        let mut files: Vec<_> =
-            std::fs::read_dir(root.join(folder)).expect("the gallery").map(|entry| entry.expect("it is read").path()).collect();
+        let mut files: Vec<_> = std::fs::read_dir(root.join(folder))
+            .expect("the gallery")
+            .map(|entry| entry.expect("it is read").path())
+            .collect();
         files.sort();
         for file in files {
             let name = format!("specs/{folder}/{}", file.file_name().unwrap_or_default().to_string_lossy());
@@ -95,8 +97,30 @@ shape = "bent"
 "#;
 
 const EXTREMES: [&str; 24] = [
-    "0", "-1", "1", "1e-300", "1e300", "-1e300", "1e15", "1e-15", "1e-7", "1e7", "4294967296", "9223372036854775807", "-0.0", "360",
-    "361", "179.999999", "180", "90", "0.5", "1e-45", "3.5e38", "nan", "inf", "\"= 0 / 0\"",
+    "0",
+    "-1",
+    "1",
+    "1e-300",
+    "1e300",
+    "-1e300",
+    "1e15",
+    "1e-15",
+    "1e-7",
+    "1e7",
+    "4294967296",
+    "9223372036854775807",
+    "-0.0",
+    "360",
+    "361",
+    "179.999999",
+    "180",
+    "90",
+    "0.5",
+    "1e-45",
+    "3.5e38",
+    "nan",
+    "inf",
+    "\"= 0 / 0\"",
 ];
 
 /// Words, numbers, punctuation and line ends.
@@ -114,7 +138,9 @@ fn tokens(text: &str) -> Vec<String> {
 
 fn damaged(text: &str, dice: &mut Dice) -> String {
     let mut tokens = tokens(text);
-    let number = |token: &String| token.starts_with(|c: char| c.is_ascii_digit() || c == '-') && token.parse::<f64>().is_ok();
+    let number = |token: &String| {
+        token.starts_with(|c: char| c.is_ascii_digit() || c == '-') && token.parse::<f64>().is_ok()
+    };
     for _ in 0..=dice.roll(3) {
         let at = dice.roll(tokens.len());
         let other = tokens[dice.roll(tokens.len())].clone();
@@ -141,7 +167,10 @@ fn run(path: &str, text: &str) -> Result<Compiled, Diagnostics> {
         .with(path, text)
         .with("specs/inputs/label.png", include_bytes!("../../specs/inputs/label.png").as_slice())
         .with("specs/inputs/crate-color.png", include_bytes!("../../specs/inputs/crate-color.png").as_slice())
-        .with("specs/inputs/crate-normal.png", include_bytes!("../../specs/inputs/crate-normal.png").as_slice())
+        .with(
+            "specs/inputs/crate-normal.png",
+            include_bytes!("../../specs/inputs/crate-normal.png").as_slice(),
+        )
         .with("specs/inputs/bird.obj", include_str!("../../specs/inputs/bird.obj"));
     let document = Document::load(path, &files)?;
     kiln::compile(&document, &files, &Options { name: "x".to_owned(), ..Options::default() })
@@ -160,9 +189,15 @@ fn damaged_documents_are_refused_with_a_place_or_baked_whole() {
     use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
     let seeds = seeds();
-    let rounds: u64 = std::env::var("KILN_ROUNDS").ok().and_then(|rounds| rounds.parse().ok()).unwrap_or(2000);
+    let rounds: u64 =
+        std::env::var("KILN_ROUNDS").ok().and_then(|rounds| rounds.parse().ok()).unwrap_or(2000);
     let faults: Vec<String> = (0..rounds).into_par_iter().filter_map(|round| fault(&seeds, round)).collect();
-    assert!(faults.is_empty(), "{} of {rounds}:\n{}", faults.len(), faults[..faults.len().min(5)].join("\n\n"));
+    assert!(
+        faults.is_empty(),
+        "{} of {rounds}:\n{}",
+        faults.len(),
+        faults[..faults.len().min(5)].join("\n\n")
+    );
     let baked = (0..200).filter(|round| try_round(&seeds, *round).1.is_ok()).count();
     assert!((20..180).contains(&baked), "{baked} of 200 are baked: the damage is too small or too great");
 }
@@ -195,15 +230,22 @@ fn judge(result: &Result<Compiled, Diagnostics>) -> Option<String> {
             let warned = !compiled.warnings.is_empty();
             let beyond = report.shapes.iter().find(|(_, shape)| {
                 let deviation = shape.deviation;
-                deviation.tolerance.is_some_and(|tolerance| deviation.bound > tolerance * (1.0 + 1e-9)) && !warned
+                deviation.tolerance.is_some_and(|tolerance| deviation.bound > tolerance * (1.0 + 1e-9))
+                    && !warned
             });
             beyond.map(|(name, shape)| format!("{name} is beyond its tolerance: {:?}", shape.deviation))
         }
         Err(found) => {
             assert!(!found.render(true).is_empty());
             let errors: Vec<_> = found.iter().filter(|one| one.severity == Severity::Error).collect();
-            let nowhere = errors.iter().find(|one| one.place().is_none() && one.code.text() != "K0306" && one.code.text() != "K0902");
-            if errors.is_empty() { Some("refused without an error".to_owned()) } else { nowhere.map(|one| format!("no place: {one:?}")) }
+            let nowhere = errors.iter().find(|one| {
+                one.place().is_none() && one.code.text() != "K0306" && one.code.text() != "K0902"
+            });
+            if errors.is_empty() {
+                Some("refused without an error".to_owned())
+            } else {
+                nowhere.map(|one| format!("no place: {one:?}"))
+            }
         }
     }
 }

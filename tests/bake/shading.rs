@@ -45,7 +45,9 @@ fn edges_are_hard_beyond_the_crease_angle() {
     }
     // The same on a profile: its corner turns by 40 degrees.
     let cone = |angle: u32| {
-        format!("[shape.a]\nsegments = [8, 2]\ncrease-angle = {angle}\n[shape.a.revolve]\nprofile = {{ polyline = {{ points = [[1, 0], [1, 1], [0.35721, 1.76604]] }} }}")
+        format!(
+            "[shape.a]\nsegments = [8, 2]\ncrease-angle = {angle}\n[shape.a.revolve]\nprofile = {{ polyline = {{ points = [[1, 0], [1, 1], [0.35721, 1.76604]] }} }}"
+        )
     };
     assert_eq!(bake(&cone(39)).only().facts.vertices, 4 * 8);
     assert_eq!(bake(&cone(41)).only().facts.vertices, 3 * 8);
@@ -59,7 +61,9 @@ fn smoothing_groups_decide_where_they_are_written() {
              faces = [[0, 1, 3, 2], [2, 3, 5, 4], [4, 5, 7, 6]]\nsmoothing-groups = {groups}"
         )
     };
-    for (groups, vertices) in [("[1, 1, 1]", 8), ("[1, 1, 2]", 10), ("[1, 2, 3]", 12), ("[0, 0, 0]", 12), ("[3, 3, 0]", 10)] {
+    for (groups, vertices) in
+        [("[1, 1, 1]", 8), ("[1, 1, 2]", 10), ("[1, 2, 3]", 12), ("[0, 0, 0]", 12), ("[3, 3, 0]", 10)]
+    {
         assert_eq!(bake(&strip(groups)).only().facts.vertices, vertices, "{groups}");
     }
 }
@@ -73,7 +77,9 @@ fn texture_coordinates_are_written_when_asked_for() {
         ("uv = \"none\"", true, false),
     ] {
         let material = if textured { "color-texture = \"label.png\"" } else { "" };
-        let text = format!("[material.x]\n{material}\n[shape.a]\nmaterial = \"x\"\n{options}\n[shape.a.sphere]\nradius = 1");
+        let text = format!(
+            "[material.x]\n{material}\n[shape.a]\nmaterial = \"x\"\n{options}\n[shape.a.sphere]\nradius = 1"
+        );
         let baked = bake(&text);
         assert_eq!(baked.glb.mesh(0).uvs.is_some(), written, "{text}");
         // Without texture coordinates nothing is split: a sphere is smooth everywhere.
@@ -116,8 +122,10 @@ fn indices_take_two_bytes_up_to_65535_vertices() {
         )
     };
     let grid = |count: &str| {
-        format!("[shape.a]\nsegments = {count}\n[shape.a.sweep]\nprofile = {{ line = {{ from = [0, 0], to = [1, 0] }} }}\n\
-                 path = {{ line = {{ from = [0, 0, 0], to = [0, 0, 9] }} }}")
+        format!(
+            "[shape.a]\nsegments = {count}\n[shape.a.sweep]\nprofile = {{ line = {{ from = [0, 0], to = [1, 0] }} }}\n\
+                 path = {{ line = {{ from = [0, 0, 0], to = [0, 0, 9] }} }}"
+        )
     };
     for (text, vertices, component) in [
         (strip(65_534), 65_534, 5123),

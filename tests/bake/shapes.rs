@@ -205,7 +205,10 @@ fn bounds_hold_what_is_measured_and_keep_the_tolerance() {
             if known.bend == FLAT {
                 assert!(deviation.bound < 1e-6, "{text}: {deviation:?}");
             } else {
-                assert!(deviation.bound >= 0.25 * tolerance, "{text} is finer than it was asked for: {deviation:?}");
+                assert!(
+                    deviation.bound >= 0.25 * tolerance,
+                    "{text} is finer than it was asked for: {deviation:?}"
+                );
                 assert!(measured >= 0.2 * deviation.bound, "{text}: the bound is loose: {deviation:?}");
             }
             assert!(baked.compiled.warnings.is_empty(), "{text}: {}", baked.compiled.warnings);

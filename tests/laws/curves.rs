@@ -32,7 +32,10 @@ impl Subject {
         let mut all = Vec::new();
         for (name, curve) in curves() {
             let map = skew();
-            all.push(Self::new(format!("{name} backwards"), AnyCurve::Reversed(Reversed::new(curve.clone()))));
+            all.push(Self::new(
+                format!("{name} backwards"),
+                AnyCurve::Reversed(Reversed::new(curve.clone())),
+            ));
             let mapped = Transformed::new(curve.clone(), map);
             all.push(Self::new(format!("{name} mapped"), AnyCurve::Transformed(mapped)));
             all.push(Self::new(name, curve));
@@ -50,7 +53,8 @@ impl Subject {
 }
 
 fn skew() -> DAffine3 {
-    let matrix = DMat3::from_cols(DVec3::new(1.0, 0.2, 0.0), DVec3::new(-0.7, 0.5, 0.1), DVec3::new(0.3, 0.0, 2.0));
+    let matrix =
+        DMat3::from_cols(DVec3::new(1.0, 0.2, 0.0), DVec3::new(-0.7, 0.5, 0.1), DVec3::new(0.3, 0.0, 2.0));
     DAffine3 { matrix3: matrix, translation: DVec3::new(1.0, -2.0, 0.5) }
 }
 
@@ -85,9 +89,19 @@ fn derivatives_are_the_limits_of_differences() {
             let first = (after.point - before.point) / (2.0 * h);
             let second = (after.first - before.first) / (2.0 * h);
             let scale = here.first.length().max(bend * (end - start));
-            assert!(first.distance(here.first) <= 1e-6 * scale, "{} at {t}: {first} {}", subject.name, here.first);
+            assert!(
+                first.distance(here.first) <= 1e-6 * scale,
+                "{} at {t}: {first} {}",
+                subject.name,
+                here.first
+            );
             let scale = bend.max(scale / (end - start));
-            assert!(second.distance(here.second) <= 5e-2 * scale, "{} at {t}: {second} {}", subject.name, here.second);
+            assert!(
+                second.distance(here.second) <= 5e-2 * scale,
+                "{} at {t}: {second} {}",
+                subject.name,
+                here.second
+            );
         }
         assert!(tried >= 50, "{}: only {tried} places are smooth", subject.name);
     }
@@ -120,12 +134,18 @@ fn chord_bounds_hold_in_both_directions() {
             let other = dice.between(piece.0, piece.1);
             let (from, to) = if round == 0 { piece } else { (one.min(other), one.max(other)) };
             let bound = subject.curve.chord_deviation(from, to);
-            let point = |t: f64| subject.curve.evaluate(t, if t == to { Side::Before } else { Side::After }).point;
+            let point =
+                |t: f64| subject.curve.evaluate(t, if t == to { Side::Before } else { Side::After }).point;
             let chord = (point(from), point(to));
-            let samples: Vec<DVec3> = (0..=400).map(|k| point(from + (to - from) * f64::from(k) / 400.0)).collect();
+            let samples: Vec<DVec3> =
+                (0..=400).map(|k| point(from + (to - from) * f64::from(k) / 400.0)).collect();
             let worst = samples.iter().map(|p| segment_distance(*p, chord)).fold(0.0, f64::max);
             let rounding = 1e-13 * (subject.size + chord.0.length());
-            assert!(worst <= bound * (1.0 + 1e-9) + rounding, "{} {from} {to}: {worst} > {bound}", subject.name);
+            assert!(
+                worst <= bound * (1.0 + 1e-9) + rounding,
+                "{} {from} {to}: {worst} > {bound}",
+                subject.name
+            );
             for k in 0..=20 {
                 let on_chord = chord.0.lerp(chord.1, f64::from(k) / 20.0);
                 let nearest = samples.windows(2).map(|p| segment_distance(on_chord, (p[0], p[1])));
@@ -200,8 +220,14 @@ fn maps_commute_with_evaluation() {
             let t = curve.domain().at(dice.between(0.0, 1.0));
             let (image, own) = (mapped.evaluate(t, Side::After), curve.evaluate(t, Side::After));
             assert!(image.point.distance(map.transform_point3(own.point)) < 1e-12, "{name}");
-            assert!(image.first.distance(map.transform_vector3(own.first)) <= 1e-12 * own.first.length(), "{name}");
-            assert!(image.second.distance(map.transform_vector3(own.second)) <= 1e-12 * own.second.length(), "{name}");
+            assert!(
+                image.first.distance(map.transform_vector3(own.first)) <= 1e-12 * own.first.length(),
+                "{name}"
+            );
+            assert!(
+                image.second.distance(map.transform_vector3(own.second)) <= 1e-12 * own.second.length(),
+                "{name}"
+            );
         }
     }
 }
@@ -225,10 +251,20 @@ fn directions_jump_at_joints_and_nowhere_else() {
         for joint in subject.curve.joints() {
             let (before, after) =
                 (subject.curve.evaluate(joint, Side::Before), subject.curve.evaluate(joint, Side::After));
-            assert!(before.point.distance(after.point) <= 1e-12 * subject.size, "{} at {joint}", subject.name);
-            let turn =
-                angle(subject.curve.direction(joint, Side::Before), subject.curve.direction(joint, Side::After));
-            assert!(turn > 1e-9 || straight_joint(&subject.name), "{} does not turn at {joint}", subject.name);
+            assert!(
+                before.point.distance(after.point) <= 1e-12 * subject.size,
+                "{} at {joint}",
+                subject.name
+            );
+            let turn = angle(
+                subject.curve.direction(joint, Side::Before),
+                subject.curve.direction(joint, Side::After),
+            );
+            assert!(
+                turn > 1e-9 || straight_joint(&subject.name),
+                "{} does not turn at {joint}",
+                subject.name
+            );
         }
         for (start, end) in &subject.pieces {
             assert_smooth(&subject, *start, *end);
@@ -261,7 +297,8 @@ fn parameters_outside_the_domain_are_its_ends() {
         let domain = curve.domain();
         for beyond in [1e-9, 0.5, 1e9, f64::INFINITY] {
             for side in [Side::Before, Side::After] {
-                let (low, high) = (curve.evaluate(domain.start - beyond, side), curve.evaluate(domain.end + beyond, side));
+                let (low, high) =
+                    (curve.evaluate(domain.start - beyond, side), curve.evaluate(domain.end + beyond, side));
                 assert_eq!(low.point, curve.evaluate(domain.start, side).point, "{name} - {beyond}");
                 assert_eq!(high.point, curve.evaluate(domain.end, side).point, "{name} + {beyond}");
                 assert!(low.first.is_finite() && high.first.is_finite(), "{name}");

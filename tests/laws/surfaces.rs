@@ -6,7 +6,11 @@ use kiln::geometry::surface::{ExtrudedSurface, RevolvedSurface, Surface, SweptSu
 use super::{Dice, curves};
 
 fn curve(name: &str) -> AnyCurve {
-    curves().into_iter().find(|(known, _)| known == name).map(|(_, curve)| curve).expect("a curve of the list")
+    curves()
+        .into_iter()
+        .find(|(known, _)| known == name)
+        .map(|(_, curve)| curve)
+        .expect("a curve of the list")
 }
 
 /// How exactly the tangents of a kind of surface are known.
@@ -57,7 +61,8 @@ fn tangents_are_the_limits_of_differences() {
     for Subject { name, surface, exactness } in surfaces() {
         let mut tried = 0;
         for _ in 0..80 {
-            let ((u, du), (v, dv)) = (inside(surface.domain_u(), &mut dice), inside(surface.domain_v(), &mut dice));
+            let ((u, du), (v, dv)) =
+                (inside(surface.domain_u(), &mut dice), inside(surface.domain_v(), &mut dice));
             let at = |u: f64, v: f64| surface.evaluate(u, v);
             let here = at(u, v);
             let differences = (
@@ -89,7 +94,8 @@ fn normals_are_unit_perpendicular_and_to_the_right_hand() {
     let mut dice = Dice::new(12);
     for Subject { name, surface, .. } in surfaces() {
         for _ in 0..80 {
-            let ((u, _), (v, _)) = (inside(surface.domain_u(), &mut dice), inside(surface.domain_v(), &mut dice));
+            let ((u, _), (v, _)) =
+                (inside(surface.domain_u(), &mut dice), inside(surface.domain_v(), &mut dice));
             let jet = surface.evaluate(u, v);
             assert!((jet.normal.length() - 1.0).abs() < 1e-12, "{name} at {u} {v}");
             for tangent in [jet.du, jet.dv] {

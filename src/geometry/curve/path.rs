@@ -125,7 +125,9 @@ impl Path {
         let last = self.curves.len() - 1;
         let t = t.clamp(0.0, (last + 1) as f64);
         let near = self.joints.partition_point(|joint| joint.t < t);
-        if let Some(Corner { curve, inner: Some(inner), .. }) = self.joints.get(near).filter(|joint| joint.t == t) {
+        if let Some(Corner { curve, inner: Some(inner), .. }) =
+            self.joints.get(near).filter(|joint| joint.t == t)
+        {
             return (*curve, *inner);
         }
         let mut index = t.floor();
@@ -133,11 +135,8 @@ impl Path {
             index -= 1.0;
         }
         let index = index.min(last as f64);
-<<<<<<< HEAD
-        (floor_index(index), t - index)
-=======
-        (index as usize, self.curves[index as usize].domain().at(t - index))
->>>>>>> tests
+        let at = floor_index(index);
+        (at, self.curves[at].domain().at(t - index))
     }
 }
 

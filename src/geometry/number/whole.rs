@@ -14,6 +14,13 @@ pub fn floor_count(number: f64) -> u32 {
     number as u32
 }
 
+/// The whole part of a number as a large count; negative and NaN give 0, what is too great the greatest.
+#[must_use]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, as stated")]
+pub fn floor_large(number: f64) -> u64 {
+    number as u64
+}
+
 /// The nearest number of single precision.
 #[must_use]
 #[expect(clippy::cast_possible_truncation, reason = "rounds, as stated")]

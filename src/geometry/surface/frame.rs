@@ -177,15 +177,21 @@ impl FrameField {
         if self.turn == 0.0 {
             return frame;
         }
-        let walked = stop
-            .map_or_else(|| from.walked + length_of_step(&self.path, from.t, t.max(from.t)), |stop| stop.walked);
+        let walked = stop.map_or_else(
+            || from.walked + length_of_step(&self.path, from.t, t.max(from.t)),
+            |stop| stop.walked,
+        );
         frame.turned(self.turn * (walked / self.length()))
     }
 
     /// Turn about the path between two parameters, radians.
     #[must_use]
     pub fn turn_between(&self, from: f64, to: f64) -> f64 {
-        if self.turn == 0.0 { 0.0 } else { self.turn * ((self.walked_to(to) - self.walked_to(from)) / self.length()) }
+        if self.turn == 0.0 {
+            0.0
+        } else {
+            self.turn * ((self.walked_to(to) - self.walked_to(from)) / self.length())
+        }
     }
 
     /// Length of the path up to a parameter, metres.

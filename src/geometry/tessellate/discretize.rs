@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::TessellateError;
 use crate::geometry::curve::{Curve, Side, length_between};
-use crate::geometry::number::{cos_degrees, floor_count};
+use crate::geometry::number::{atan2, cos_degrees, floor_count, floor_large};
 
 /// A point of a curve that a mesh will use.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +23,17 @@ pub struct Station {
     pub after: DVec3,
     /// Proved bound on the deviation of the chord that starts here; zero at the last station.
     pub deviation: f64,
+}
+
+impl Station {
+    /// Degrees by which the direction jumps here.
+    #[must_use]
+    pub fn turn(&self) -> f64 {
+        if self.before == self.after {
+            return 0.0;
+        }
+        atan2(self.before.cross(self.after).length(), self.before.dot(self.after)).to_degrees()
+    }
 }
 
 /// How finely a curve is cut.
@@ -81,7 +92,7 @@ fn lower_estimate(curve: &impl Curve, stops: &[f64], tolerance: f64) -> u64 {
         let parts = (0..PARTS).map(|k| (curve.chord_deviation(at(k), at(k + 1)) / tolerance).sqrt());
         chords += parts.sum::<f64>();
     }
-    (chords / 4.0) as u64
+    floor_large(chords / 4.0)
 }
 
 /// `count` steps over the stops in proportion to their lengths, at least one for each.

@@ -12,7 +12,6 @@ use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessel
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh;
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex};
-use crate::geometry::number::atan2;
 
 /// A closed outline in the xy plane with holes, pushed from z = `bottom` to `bottom` + `height`.
 #[derive(Clone, Debug, PartialEq)]
@@ -187,11 +186,7 @@ impl SmoothRun {
 /// Splits a closed outline at its hard edges, and without texture coordinates nowhere else.
 fn smooth_runs(outline: &Outline, detail: &Detail) -> Vec<SmoothRun> {
     let last = mesh::index(outline.stations.len()) - 1;
-    let hard = |k: u32| {
-        let station = &outline.stations[k as usize];
-        let sine = station.before.cross(station.after).length();
-        atan2(sine, station.before.dot(station.after)).to_degrees() > detail.crease_angle
-    };
+    let hard = |k: u32| outline.stations[k as usize].turn() > detail.crease_angle;
     let mut stops: Vec<u32> = (1..last).filter(|k| hard(*k)).collect();
     if stops.is_empty() && !hard(0) && !detail.uv {
         return vec![SmoothRun { from: 0, to: last, kind: RowKind::Round, hard: (false, false) }];

@@ -24,7 +24,7 @@ use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessel
 use crate::geometry::curve::{AnyCurve, Curve};
 use crate::geometry::mesh;
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex};
-use crate::geometry::number::{cos_degrees, floor_count, sin_cos_degrees, size};
+use crate::geometry::number::{cos_degrees, floor_count, floor_large, sin_cos_degrees, size};
 
 /// A profile turned about the y axis: x of the profile is the radius. Angles in degrees, from +x toward -z.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,7 +82,7 @@ fn refuse_early(shape: &Revolution, detail: &Detail) -> Result<(), TessellateErr
         match Plan::new(shape, &Detail { density, triangle_limit: FEW, uv: false, ..*detail }) {
             Ok(plan) => {
                 // Rings have at least four steps however coarse they are: a quarter is safe.
-                let needed = (plan.triangles() as f64 * coarser / 4.0) as u64;
+                let needed = floor_large(plan.triangles() as f64 * coarser / 4.0);
                 let limit = detail.triangle_limit;
                 let passed = coarser > 1.0 && needed > limit;
                 return if passed { Err(TessellateError::TooMany { needed, limit }) } else { Ok(()) };
@@ -162,7 +162,7 @@ impl Plan {
 
     fn is_corner(&self, index: usize, crease_angle: f64) -> bool {
         let station = &self.stations[index];
-        turn_of(station) > crease_angle
+        station.turn() > crease_angle
     }
 
     /// Steps of the ring at a station, by the bands beside it.
@@ -171,7 +171,7 @@ impl Plan {
         let at_end = index == 0 || index == last;
         let radius = self.radius(index);
         // Chords of rims and of edges are feature lines: they keep the tolerance by themselves.
-        let feature = (at_end && !self.closed) || turn_of(&self.stations[index]) > STRAIGHT;
+        let feature = (at_end && !self.closed) || self.stations[index].turn() > STRAIGHT;
         let mut step = if feature { ring_step(radius, tolerance) } else { f64::INFINITY };
         let mut bands = vec![];
         if index > 0 {
@@ -213,7 +213,7 @@ impl Plan {
         }
         // Rims: the flat side of a disc is exact, its edge is not.
         for index in 0..self.stations.len() {
-            if !self.on_axis(index) && turn_of(&self.stations[index]) > STRAIGHT || self.is_rim(index) {
+            if !self.on_axis(index) && self.stations[index].turn() > STRAIGHT || self.is_rim(index) {
                 bound = bound.max(self.radius(index) * (1.0 - cos_degrees(step(index).to_degrees() / 2.0)));
             }
         }
@@ -228,12 +228,6 @@ impl Plan {
 /// The step of angle whose chord on a circle of this radius deviates by at most `tolerance`.
 fn ring_step(radius: f64, tolerance: f64) -> f64 {
     if radius <= 0.0 { f64::INFINITY } else { (8.0 * tolerance / radius).sqrt() }
-}
-
-/// Degrees by which the direction jumps at a station.
-fn turn_of(station: &Station) -> f64 {
-    let sine = station.before.cross(station.after).length();
-    crate::geometry::number::atan2(sine, station.before.dot(station.after)).to_degrees()
 }
 
 fn snap_to_axis(stations: &mut [Station]) {

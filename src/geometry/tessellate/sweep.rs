@@ -14,7 +14,7 @@ use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessel
 use crate::geometry::curve::{AnyCurve, Curve, Domain, Jet, Side};
 use crate::geometry::mesh;
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
-use crate::geometry::number::{atan2, ln, pow};
+use crate::geometry::number::{ln, pow};
 use crate::geometry::surface::{Section, SweptSurface};
 
 /// A section carried along a path by rotation-minimizing frames.
@@ -272,6 +272,9 @@ impl Plan {
 
     /// Greatest distance from the middles of chords and diagonals between two rows to the surface.
     fn cell_deviation(&self, row: usize, middle: &Section) -> f64 {
+        if middle.twist == 0.0 {
+            return self.plain_cell_deviation(row, middle);
+        }
         let (start, end) = (&self.sections[row].1, &self.sections[row + 1].0);
         let mut deviation = 0.0_f64;
         let place = |column: usize| self.profile[column].point;
@@ -286,6 +289,33 @@ impl Plan {
                 deviation = deviation.max(self.normal_distance(diagonal, middle, (before, here), column));
             }
             before = here;
+        }
+        deviation
+    }
+
+    /// The same without twist: the normals of the surface lie in the plane of the middle section, where all is
+    /// measured in its own two coordinates.
+    fn plain_cell_deviation(&self, row: usize, middle: &Section) -> f64 {
+        let (start, end) = (&self.sections[row].1, &self.sections[row + 1].0);
+        let flat = |point: DVec3| {
+            let away = point - middle.origin;
+            DVec2::new(away.dot(middle.frame.side), away.dot(middle.frame.up))
+        };
+        let mut deviation = 0.0_f64;
+        let mut before: Option<(DVec2, DVec2)> = None;
+        for station in &self.profile {
+            let here = station.point.truncate();
+            let (near, far) = (flat(start.point(here.x, here.y)), flat(end.point(here.x, here.y)));
+            let away = (near + far) / 2.0 - here;
+            // At a corner of the section there is no one normal: all of the distance counts.
+            let corner = station.before != station.after;
+            let across = station.after.truncate().perp_dot(away).abs();
+            deviation = deviation.max(if corner { away.length() } else { across });
+            if let Some((last, last_near)) = before {
+                let away = (last_near + far) / 2.0 - (last + here) / 2.0;
+                deviation = deviation.max((here - last).normalize_or_zero().perp_dot(away).abs());
+            }
+            before = Some((here, near));
         }
         deviation
     }
@@ -367,16 +397,24 @@ impl Plan {
             |from: usize, to: usize, count: usize, closed: bool| closed && from == 0 && to == count - 1;
         let share = |round: bool| round && !detail.uv;
         let round_path = share(whole(first, last, self.path.len(), self.path_closed))
-            && self.turn(&self.path[0]) <= detail.crease_angle;
+            && self.path[0].turn() <= detail.crease_angle;
         let round_profile = share(whole(left, right, self.profile.len(), self.profile_closed))
-            && self.turn(&self.profile[0]) <= detail.crease_angle;
+            && self.profile[0].turn() <= detail.crease_angle;
         let rows = last - first + usize::from(!round_path);
         let columns = right - left + usize::from(!round_profile);
         let base = mesh::index(mesh.vertices.len());
+        let directions: Vec<DVec3> = (left..left + columns)
+            .map(|column| self.direction(column, (column == left, column == right), detail))
+            .collect();
         for row in first..first + rows {
-            for column in left..left + columns {
-                let place = ((row, row == first, row == last), (column, column == left, column == right));
-                mesh.vertices.push(self.vertex(place, detail));
+            let hard_row = self.path[row].turn() > detail.crease_angle;
+            let side = match (hard_row, row == first, row == last) {
+                (true, true, _) => Some(Side::After),
+                (true, _, true) => Some(Side::Before),
+                _ => None,
+            };
+            for (column, direction) in (left..).zip(&directions) {
+                mesh.vertices.push(self.vertex((row, side), (column, *direction), detail));
             }
         }
         let at = |row: usize, column: usize| {
@@ -392,31 +430,32 @@ impl Plan {
         }
     }
 
-    fn turn(&self, station: &Station) -> f64 {
-        atan2(station.before.cross(station.after).length(), station.before.dot(station.after)).to_degrees()
+    /// Direction of the section at a column; at a hard joint of the side that the patch lies on.
+    fn direction(&self, column: usize, (left, right): (bool, bool), detail: &Detail) -> DVec3 {
+        let station = &self.profile[column];
+        match (station.turn() > detail.crease_angle, left, right) {
+            (true, true, _) => station.after,
+            (true, _, true) => station.before,
+            _ if station.before == station.after => station.after,
+            _ => (station.before + station.after).normalize_or(station.after),
+        }
     }
 
     fn vertex(
         &self,
-        ((row, first, last), (column, left, right)): ((usize, bool, bool), (usize, bool, bool)),
+        (row, side): (usize, Option<Side>),
+        (column, direction): (usize, DVec3),
         detail: &Detail,
     ) -> Vertex {
         let station = &self.profile[column];
-        let hard = self.turn(station) > detail.crease_angle;
-        let direction = match (hard, left, right) {
-            (true, true, _) => station.after,
-            (true, _, true) => station.before,
-            _ => (station.before + station.after).normalize_or(station.after),
-        };
         let (before, after) = &self.sections[row];
         let place = (station.point.x, station.point.y);
         let direction = (direction.x, direction.y);
-        let hard_row = self.turn(&self.path[row]) > detail.crease_angle;
-        let normal = match (hard_row, first, last) {
-            (true, true, _) => after.normal(place, direction),
-            (true, _, true) => before.normal(place, direction),
-            _ if before.frame.along == after.frame.along => after.normal(place, direction),
-            _ => (before.normal(place, direction) + after.normal(place, direction)).normalize_or(DVec3::Y),
+        let normal = match side {
+            Some(Side::After) => after.normal(place, direction),
+            Some(Side::Before) => before.normal(place, direction),
+            None if before.frame.along == after.frame.along => after.normal(place, direction),
+            None => (before.normal(place, direction) + after.normal(place, direction)).normalize_or(DVec3::Y),
         };
         let uv = DVec2::new(self.profile_along[column], 1.0 - self.path_along[row]);
         Vertex {
@@ -506,10 +545,7 @@ fn clear_of_corners(surface: &SweptSurface, path: Vec<Station>, profile: &[Stati
 /// Runs of stations between hard joints.
 fn hard_runs(stations: &[Station], detail: &Detail) -> Vec<(usize, usize)> {
     let last = stations.len() - 1;
-    let hard = |station: &Station| {
-        let sine = station.before.cross(station.after).length();
-        atan2(sine, station.before.dot(station.after)).to_degrees() > detail.crease_angle
-    };
+    let hard = |station: &Station| station.turn() > detail.crease_angle;
     let mut stops = vec![0];
     stops.extend((1..last).filter(|index| hard(&stations[*index])));
     stops.push(last);
