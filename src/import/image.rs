@@ -135,8 +135,12 @@ fn check_size(width: u32, height: u32, limit: u64) -> Result<(), ImageError> {
 }
 
 fn read_png(bytes: &[u8], pixel_limit: u64) -> Result<ImageFacts, ImageError> {
-    let damaged =
-        |error: png::DecodingError| ImageError::Damaged { kind: Kind::Png, reason: error.to_string() };
+    let damaged = |error: png::DecodingError| {
+        let whole = error.to_string();
+        // What follows names the chunk in the words of the decoder's own types.
+        let reason = whole.split(" while decoding").next().unwrap_or(&whole).trim_end_matches('.').to_owned();
+        ImageError::Damaged { kind: Kind::Png, reason }
+    };
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     let header = decoder.read_header_info().map_err(damaged)?;
     let (width, height) = (header.width, header.height);

@@ -104,6 +104,23 @@ pub struct Window {
     pub v: [f64; 3],
 }
 
+/// Least and greatest parameter of the corners of a triangle. Where they stand on both sides of the seam of a
+/// closed curve, those after it count from the end of the domain on.
+fn unwrapped(curve: &AnyCurve, corners: [f64; 3]) -> (f64, f64) {
+    let domain = curve.domain();
+    let wide = |values: [f64; 3]| {
+        let low = values.into_iter().fold(f64::INFINITY, f64::min);
+        let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        (low, high)
+    };
+    let (low, high) = wide(corners);
+    let half = domain.span() / 2.0;
+    if !curve.is_closed() || high - low <= half {
+        return (low, high);
+    }
+    wide(corners.map(|value| if value < domain.start + half { value + domain.span() } else { value }))
+}
+
 /// Ranges of a curve's parameter around those of a triangle's corners, as wide again to both sides: a chord
 /// lies inside its arc, and the point nearest to it may belong to the next. Around a closed curve the corners
 /// may stand on both sides of the seam, and a range that leaves the domain comes back at the other end.
@@ -111,16 +128,7 @@ fn ranges(curve: &AnyCurve, corners: [f64; 3]) -> Vec<(f64, f64)> {
     let domain = curve.domain();
     let period = domain.span();
     let closed = curve.is_closed();
-    let wide = |values: [f64; 3]| {
-        let low = values.into_iter().fold(f64::INFINITY, f64::min);
-        let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        (low, high)
-    };
-    let (mut low, mut high) = wide(corners);
-    if closed && high - low > period / 2.0 {
-        let middle = domain.start + period / 2.0;
-        (low, high) = wide(corners.map(|value| if value < middle { value + period } else { value }));
-    }
+    let (mut low, mut high) = unwrapped(curve, corners);
     let margin = (high - low).max(1e-6 * period);
     // Each range is one stretch between stations or nearly so: over several a few samples might miss the place.
     let inside = |t: f64| t.clamp(domain.start, domain.end);
@@ -170,8 +178,7 @@ impl Source {
 fn swept_distance(surface: &SweptSurface, point: DVec3, window: &Window) -> f64 {
     let joints = surface.path.joints();
     let domain = surface.path.domain();
-    let low = window.v.into_iter().fold(f64::INFINITY, f64::min);
-    let high = window.v.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = unwrapped(&surface.path, window.v);
     let corner_below = joints.iter().copied().filter(|t| *t <= low).fold(f64::NEG_INFINITY, f64::max);
     let corner_above = joints.iter().copied().filter(|t| *t >= high).fold(f64::INFINITY, f64::min);
     let margin = high - low;

@@ -180,17 +180,14 @@ fn tangents_are_written_if_and_only_if_a_normal_texture_shows() {
     let has =
         |mesh: usize| baked.glb.list("meshes")[mesh]["primitives"][0]["attributes"].get("TANGENT").is_some();
     assert_eq!((has(0), has(1)), (false, true));
-    let refused = compile(
-        "[material.x]\nnormal-texture = \"bumps.png\"\n[shape.a]\nmaterial = \"x\"\nuv = \"none\"\n[shape.a.sphere]\nradius = 1",
-        &options(None, &[]),
-    );
-    // Without texture coordinates there are no tangents; the file is valid all the same, and it is said.
-    let compiled = refused.unwrap_or_else(|found| panic!("{found}"));
-    assert!(
-        compiled.warnings.iter().any(|warning| warning.message.contains("texture")),
-        "{}",
-        compiled.warnings
-    );
+}
+
+/// glTF demands texture coordinates where a texture shows, so a shape without them cannot wear one.
+#[test]
+fn a_texture_on_a_shape_without_coordinates_is_refused() {
+    let text = "[material.x]\ncolor-texture = \"label.png\"\n[shape.a]\nuv = \"none\"\n[shape.a.sphere]\nradius = 1\n[node.n]\nshape = \"a\"\nmaterial = \"x\"";
+    let found = compile(text, &options(None, &[])).expect_err("it is refused");
+    assert_eq!(found.iter().map(|one| one.code.text()).collect::<Vec<_>>(), ["K0105"], "{found}");
 }
 
 #[test]

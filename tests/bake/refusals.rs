@@ -13,6 +13,9 @@ fn with_broken(files: MemoryFiles) -> MemoryFiles {
     let png: &[u8] = include_bytes!("../../specs/inputs/label.png");
     let mut bomb = png.to_vec();
     bomb[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
+    let mut sum = flate2::Crc::new();
+    sum.update(&bomb[12..29]);
+    bomb[29..33].copy_from_slice(&sum.sum().to_be_bytes());
     let mut liar = vec![0; 84 + 50];
     liar[80..84].copy_from_slice(&1_000_000_u32.to_le_bytes());
     files
