@@ -188,6 +188,7 @@ fn unwritable(error: &SceneError, built: &Built) -> Diagnostic {
     let (code, shape) = match error {
         SceneError::NoTriangle(name) => (Code::NothingToShow, named(name)),
         SceneError::TooLarge(name) => (Code::LimitPassed, named(name)),
+        SceneError::NoArea(name) => (Code::NoArea, named(name)),
         SceneError::NoUv(name, _) => (Code::Conflict, named(name)),
         SceneError::NotFinite(name) | SceneError::NotUnit(name, _) => (Code::NotFinite, named(name)),
         _ => (Code::NothingToShow, None),

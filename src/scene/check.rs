@@ -1,6 +1,9 @@
 //! The proof that a scene can be written.
 
+use glam::DVec3;
 use thiserror::Error;
+
+use crate::geometry::mesh::VertexIndex;
 
 use super::{Geometry, MeshUse, Node, Scene};
 
@@ -27,6 +30,11 @@ pub enum SceneError {
     /// A geometry has no triangle.
     #[error("shape `{0}` has no triangle")]
     NoTriangle(String),
+    /// Nothing of a geometry can be seen.
+    #[error(
+        "shape `{0}` has no area: rounded to single precision each of its triangles is a line or a point"
+    )]
+    NoArea(String),
     /// A number is not finite or does not fit single precision.
     #[error("shape `{0}` has a coordinate that is not finite or beyond single precision")]
     NotFinite(String),
@@ -102,6 +110,16 @@ fn check_geometry(geometry: &Geometry) -> Result<(), SceneError> {
     let count = mesh.vertices.len();
     if mesh.triangles.iter().any(|triangle| triangle.iter().any(|vertex| vertex.0 as usize >= count)) {
         return Err(SceneError::Dangling(format!("a triangle of shape `{}`", geometry.name)));
+    }
+    let place = |vertex: VertexIndex| {
+        mesh.points[mesh.vertices[vertex.0 as usize].point.0 as usize].as_vec3().as_dvec3()
+    };
+    let flat = |triangle: &[VertexIndex; 3]| {
+        let [a, b, c] = triangle.map(place);
+        (b - a).cross(c - a) == DVec3::ZERO
+    };
+    if mesh.triangles.iter().all(flat) {
+        return Err(SceneError::NoArea(name()));
     }
     check_runs(geometry)?;
     check_tangents(geometry)

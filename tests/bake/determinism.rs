@@ -7,7 +7,7 @@ use super::compile;
 /// Many shapes of all kinds, with textures, tangents, instances and imports.
 fn document() -> String {
     let mut text = String::from(
-        "tolerance = 0.003\n[material.x]\ncolor-texture = \"label.png\"\nnormal-texture = \"bumps.png\"\n[material.y]\ncolor = \"#123456\"\n\
+        "tolerance = 0.006\n[material.x]\ncolor-texture = \"label.png\"\nnormal-texture = \"bumps.png\"\n[material.y]\ncolor = \"#123456\"\n\
          [shape.bird]\nmaterial = \"x\"\nuv = \"always\"\n[shape.bird.import]\nfile = \"bird.obj\"\n",
     );
     for k in 1..=4 {
@@ -32,7 +32,7 @@ fn any_number_of_threads_gives_the_same_bytes_and_report() {
         (compiled.bytes, report, compiled.warnings.render(false))
     };
     let one = bake(1);
-    assert!(one.0.len() > 400_000, "only {} bytes: too little to differ", one.0.len());
+    assert!(one.0.len() > 200_000, "only {} bytes: too little to differ", one.0.len());
     for threads in [2, 8] {
         let other = bake(threads);
         assert_eq!(blake3::hash(&other.0), blake3::hash(&one.0), "{threads} threads");

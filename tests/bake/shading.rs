@@ -1,6 +1,8 @@
 //! Vertices, normals and texture coordinates.
 
-use super::bake;
+use kiln::compile::Options;
+
+use super::{bake, bake_with};
 
 #[test]
 fn flat_smooth_and_automatic_shading() {
@@ -133,7 +135,7 @@ fn indices_take_two_bytes_up_to_65535_vertices() {
         (grid("[256, 254]"), 65_535, 5123),
         (strip(65_536), 65_536, 5125),
     ] {
-        let baked = bake(&text);
+        let baked = bake_with(&text, &Options::default());
         assert_eq!(baked.only().facts.vertices, vertices);
         let accessor = baked.glb.list("meshes")[0]["primitives"][0]["indices"].as_u64().expect("indices");
         let accessor = &baked.glb.list("accessors")[usize::try_from(accessor).expect("small")];

@@ -42,6 +42,9 @@ pub fn extrude(shape: &Extrusion, detail: &Detail) -> Result<Tessellation, Tesse
         SurfaceDensity::Grid { v, .. } => v.max(1),
         SurfaceDensity::Tolerance(_) => 1,
     };
+    if let SurfaceDensity::Grid { u, v } = detail.density {
+        detail.allow(2 * u64::from(u) * u64::from(v) * shape.outlines.len() as u64)?;
+    }
     let mut outlines = Vec::new();
     let mut needed = 0;
     for (index, curve) in shape.outlines.iter().enumerate() {

@@ -81,6 +81,14 @@ pub struct Detail {
     pub triangle_limit: u64,
 }
 
+impl Detail {
+    /// Refuses a number of triangles beyond the limit.
+    fn allow(&self, needed: u64) -> Result<(), TessellateError> {
+        let limit = self.triangle_limit;
+        if needed > limit { Err(TessellateError::TooMany { needed, limit }) } else { Ok(()) }
+    }
+}
+
 /// How finely a surface is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SurfaceDensity {

@@ -75,7 +75,10 @@ pub fn revolve(shape: &Revolution, detail: &Detail) -> Result<Tessellation, Tess
 fn refuse_early(shape: &Revolution, detail: &Detail) -> Result<(), TessellateError> {
     /// Chords of a plan that costs nothing to speak of.
     const FEW: u64 = 1024;
-    let SurfaceDensity::Tolerance(tolerance) = detail.density else { return Ok(()) };
+    let tolerance = match detail.density {
+        SurfaceDensity::Tolerance(tolerance) => tolerance,
+        SurfaceDensity::Grid { u, v } => return detail.allow(u64::from(u) * u64::from(v)),
+    };
     let mut coarser = 1.0;
     while coarser < 1e30 {
         let density = SurfaceDensity::Tolerance(tolerance * coarser);

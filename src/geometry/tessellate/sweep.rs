@@ -46,6 +46,9 @@ const GREATEST_TWIST: f64 = 1.0;
 /// # Errors
 /// When the limit would be passed, the section encloses no area, or an end cannot be triangulated.
 pub fn sweep(shape: &Sweep, detail: &Detail) -> Result<Tessellation, TessellateError> {
+    if let SurfaceDensity::Grid { u, v } = detail.density {
+        detail.allow(2 * u64::from(u) * u64::from(v))?;
+    }
     let surface = SweptSurface::new(shape.profile.clone(), shape.path.clone(), shape.twist);
     let SurfaceDensity::Tolerance(tolerance) = detail.density else {
         return Plan::new(shape, &surface, detail, 0.0)?.build(shape, detail);
