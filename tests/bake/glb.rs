@@ -39,6 +39,16 @@ fn count(value: &Value) -> usize {
     usize::try_from(value.as_u64().unwrap_or(0)).expect("it fits")
 }
 
+/// An index that was read as a number.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "read from 16 or 32 bits without a sign"
+)]
+fn whole(number: f64) -> usize {
+    number as usize
+}
+
 impl Glb {
     /// Splits a file into its chunks.
     pub(crate) fn new(bytes: &[u8]) -> Self {
@@ -109,7 +119,7 @@ impl Glb {
             assert_eq!(primitive["attributes"]["POSITION"], first["attributes"]["POSITION"]);
             assert!(primitive.get("mode").is_none_or(|mode| *mode == 4));
             let indices: Vec<usize> =
-                self.accessor(count(&primitive["indices"])).iter().map(|row| row[0] as usize).collect();
+                self.accessor(count(&primitive["indices"])).iter().map(|row| whole(row[0])).collect();
             assert_eq!(indices.len() % 3, 0);
             triangles.extend(indices.chunks(3).map(|corners| [corners[0], corners[1], corners[2]]));
         }
@@ -134,7 +144,7 @@ impl Glb {
         let mut ends = 0;
         for (index, view) in self.list("bufferViews").iter().enumerate() {
             let start = count(&view["byteOffset"]);
-            assert!(start >= ends && start % 4 == 0, "view {index} overlaps or is not aligned");
+            assert!(start >= ends && start.is_multiple_of(4), "view {index} overlaps or is not aligned");
             ends = start + self.view(index).len();
         }
         for mesh in 0..self.list("meshes").len() {

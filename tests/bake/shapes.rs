@@ -176,7 +176,11 @@ fn solids_are_closed_and_have_the_area_and_volume_of_school() {
             let facts = &shape.facts;
             assert!(facts.closed && facts.manifold, "{text}: {facts:?}");
             assert_eq!((facts.genus, facts.components), (Some(known.genus), known.components), "{text}");
-            assert_eq!(facts.euler, 2 * known.components as i64 - 2 * known.genus as i64, "{text}");
+            assert_eq!(
+                facts.euler,
+                2 * known.components.cast_signed() - 2 * known.genus.cast_signed(),
+                "{text}"
+            );
             assert_eq!((facts.degenerate_triangles, facts.boundary_edges), (0, 0), "{text}");
             // Two surfaces that are nowhere further apart than the bound enclose volumes that differ by at most
             // a layer of that thickness.
