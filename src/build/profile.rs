@@ -5,7 +5,9 @@ use glam::DVec2;
 use super::Builder;
 use crate::geometry::curve::{AnyCurve, Curve as _};
 use crate::geometry::number::Bounds;
-use crate::geometry::tessellate::{Crossing, Density, Station, discretize, first_crossing};
+use crate::geometry::tessellate::{
+    Contact, Crossing, Density, Station, discretize, encloses, first_contact, first_crossing,
+};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::CurveReference;
@@ -90,6 +92,42 @@ impl Builder<'_> {
         Some(profile)
     }
 
+    /// Holes must lie inside their outline and apart from each other.
+    pub(super) fn check_holes(&mut self, outline: &Profile, holes: &[Profile]) -> Option<()> {
+        let outlines: Vec<&Profile> = std::iter::once(outline).chain(holes).collect();
+        let places: Vec<Vec<DVec2>> = outlines.iter().map(|profile| profile.places()).collect();
+        let hole = |index: usize| format!("`holes[{}]`", index - 1);
+        let help = "holes lie inside the outline and apart from each other";
+        let contact = first_contact(&places).and_then(|contact| confirmed(&outlines, &contact));
+        if let Some(Contact { first, second, point }) = contact {
+            let other = if first == 0 { "the outline".to_owned() } else { hole(first) };
+            let message = format!("{} meets {other} near {}", hole(second), place(point));
+            let report = Diagnostic::error(Code::BadHole, message)
+                .at(outlines[second].span, "this hole")
+                .also(outlines[first].span, if first == 0 { "the outline" } else { "the other hole" })
+                .help(help);
+            self.report(report);
+            return None;
+        }
+        for index in 1..outlines.len() {
+            let start = places[index][0];
+            let around = (1..index).find(|other| encloses(&places[*other], start));
+            let inside = (1..index).find(|other| encloses(&places[index], places[*other][0]));
+            let swallowed = encloses(&places[index], places[0][0]);
+            let message = match (encloses(&places[0], start), around, inside) {
+                (false, ..) if swallowed => format!("{} lies around the outline", hole(index)),
+                (false, ..) => format!("{} lies outside of the outline", hole(index)),
+                (_, Some(other), _) => format!("{} lies inside {}", hole(index), hole(other)),
+                (_, _, Some(other)) => format!("{} lies around {}", hole(index), hole(other)),
+                _ => continue,
+            };
+            let report = Diagnostic::error(Code::BadHole, message).at(outlines[index].span, "this hole");
+            self.report(report.also(outline.span, "the outline").help(help));
+            return None;
+        }
+        Some(())
+    }
+
     fn crossed(&mut self, profile: &Profile, what: &str, crossing: &Crossing) -> Option<Profile> {
         let t = |segment: usize| profile.stations[segment].t;
         let message = format!("the {what} crosses itself near {}", place(crossing.point));
@@ -108,12 +146,30 @@ impl Builder<'_> {
 
 impl Profile {
     fn crossing(&self) -> Option<Crossing> {
-        let closed = self.curve.is_closed();
-        let used = self.stations.len() - usize::from(closed);
-        let points: Vec<DVec2> =
-            self.stations[..used].iter().map(|station| station.point.truncate()).collect();
-        first_crossing(&points, closed)
+        first_crossing(&self.places(), self.curve.is_closed())
     }
+
+    /// Points along it, the end of a closed one left out.
+    fn places(&self) -> Vec<DVec2> {
+        flat(&self.stations, self.curve.is_closed())
+    }
+}
+
+fn flat(stations: &[Station], closed: bool) -> Vec<DVec2> {
+    let used = stations.len() - usize::from(closed);
+    stations[..used].iter().map(|station| station.point.truncate()).collect()
+}
+
+/// A contact that is still there when both outlines are cut a thousand times finer: chords may meet where the
+/// curves come close.
+fn confirmed(outlines: &[&Profile], contact: &Contact) -> Option<Contact> {
+    let finer = |index: usize| {
+        let profile = outlines[index];
+        let stations = discretize(&profile.curve, Density::Tolerance(profile.size / 4e6), CHORDS).ok()?;
+        Some(flat(&stations, true))
+    };
+    let pair = [finer(contact.first)?, finer(contact.second)?];
+    first_contact(&pair).map(|found| Contact { point: found.point, ..*contact })
 }
 
 /// A number for a message, to six digits.

@@ -145,6 +145,7 @@ impl Builder<'_> {
         let holes: Vec<_> = extrude.holes.iter().map(|hole| self.closed_profile(hole, "hole")).collect();
         let holes: Option<Vec<_>> = holes.into_iter().collect();
         let (outline, holes) = (outline?, holes?);
+        self.check_holes(&outline, &holes)?;
         let height = extrude.height.value;
         let mut outlines = vec![outline.curve];
         outlines.extend(holes.into_iter().map(|hole| hole.curve));

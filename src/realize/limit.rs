@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::RealizeError;
 use crate::geometry::mesh::{Mesh, Vertex};
-use crate::model::Limits;
+use crate::model::{Limits, Model, Recipe};
 
 /// What a mesh takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,6 +63,23 @@ impl Cost {
 /// The most triangles of one surface, known before it is made.
 pub(super) fn triangle_limit(limits: &Limits) -> u64 {
     limits.triangles.min(limits.memory / BYTES_OF_TRIANGLE)
+}
+
+/// For each shape a number of triangles that it will have at least, known without making it: copies of copies
+/// are refused before the first is made.
+pub(super) fn least_triangles(model: &Model) -> Vec<u64> {
+    let mut all: Vec<u64> = Vec::with_capacity(model.shapes.len());
+    for shape in &model.shapes {
+        all.push(match &shape.recipe {
+            // A recipe refers only to shapes before it.
+            Recipe::Assembly(parts) => {
+                parts.iter().fold(0, |sum: u64, (part, _)| sum.saturating_add(all[part.0 as usize]))
+            }
+            Recipe::Cuboid { .. } => 12,
+            _ => 1,
+        });
+    }
+    all
 }
 
 /// A surface that was refused for its triangles, said in terms of the limit that was meant.

@@ -31,6 +31,8 @@ pub(super) struct Maker<'a> {
     coarser: f64,
     /// The box of each shape, its placement applied.
     extents: Vec<Bounds>,
+    /// Triangles that each shape has at least.
+    least: Vec<u64>,
 }
 
 /// What a shape gets from those that use it, as lengths in the space where it is placed.
@@ -58,12 +60,16 @@ impl Inherited {
 impl<'a> Maker<'a> {
     pub(super) fn new(model: &'a Model, options: &Options) -> Self {
         let coarser = if options.coarser > 0.0 { options.coarser } else { 1.0 };
-        Self { model, coarser, extents: super::source::extents(model) }
+        Self { model, coarser, extents: super::source::extents(model), least: limit::least_triangles(model) }
     }
 
     /// The shape in the document's unit, its placement applied. Anchors carry the index that
     /// [`sources`](super::sources) gives to their surface.
     pub(super) fn make(&self, handle: ShapeHandle, uv: bool) -> Result<Made, RealizeError> {
+        let least = self.least[handle.0 as usize];
+        if least > limit::triangle_limit(&self.model.limits) {
+            return Err(limit::in_terms_of(least, &self.model.limits));
+        }
         let mut first_source = 0;
         let rounding = single_rounding(self.extents[handle.0 as usize].reach());
         self.part(handle, Inherited { tolerance: self.model.tolerance, rounding, uv }, &mut first_source)

@@ -47,6 +47,55 @@ pub fn first_crossing(points: &[DVec2], closed: bool) -> Option<Crossing> {
     found
 }
 
+/// Two closed outlines that meet where they should not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// Index of the first outline.
+    pub first: usize,
+    /// Index of the second outline, greater.
+    pub second: usize,
+    /// About where they meet.
+    pub point: DVec2,
+}
+
+/// The first pair of closed outlines, by index, that cross or touch. Cost as that of [`first_crossing`].
+#[must_use]
+pub fn first_contact(outlines: &[Vec<DVec2>]) -> Option<Contact> {
+    let mut segments: Vec<(usize, (DVec2, DVec2))> = Vec::new();
+    for (owner, points) in outlines.iter().enumerate() {
+        let next = points.iter().cycle().skip(1);
+        segments.extend(points.iter().zip(next).map(|(a, b)| (owner, (*a, *b))));
+    }
+    let left = |(_, (a, b)): &(usize, (DVec2, DVec2))| a.x.min(b.x);
+    segments.sort_by(|a, b| left(a).total_cmp(&left(b)));
+    let mut found: Option<Contact> = None;
+    let mut active: Vec<(usize, (DVec2, DVec2))> = Vec::new();
+    for segment in segments {
+        active.retain(|(_, (a, b))| a.x.max(b.x) >= left(&segment));
+        for other in active.iter().filter(|other| other.0 != segment.0) {
+            let (one, two) = if other.0 < segment.0 { (*other, segment) } else { (segment, *other) };
+            let nearer = found.is_none_or(|best| (one.0, two.0) < (best.first, best.second));
+            if let Some(point) = meeting(one.1, two.1, false).filter(|_| nearer) {
+                found = Some(Contact { first: one.0, second: two.0, point });
+            }
+        }
+        active.push(segment);
+    }
+    found
+}
+
+/// Whether a closed outline goes around a point; exact unless the point lies on it. O(points).
+#[must_use]
+pub fn encloses(outline: &[DVec2], point: DVec2) -> bool {
+    let next = outline.iter().cycle().skip(1);
+    let crosses = |(a, b): (&DVec2, &DVec2)| {
+        let upward = a.y <= point.y && b.y > point.y;
+        let downward = b.y <= point.y && a.y > point.y;
+        (upward && side(*a, *b, point) > 0.0) || (downward && side(*a, *b, point) < 0.0)
+    };
+    outline.iter().zip(next).filter(|edge| crosses(*edge)).count() % 2 == 1
+}
+
 fn side(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let coord = |p: DVec2| Coord { x: p.x, y: p.y };
     orient2d(coord(a), coord(b), coord(c))
@@ -88,7 +137,28 @@ fn fold(p: (DVec2, DVec2), q: (DVec2, DVec2)) -> Option<DVec2> {
 mod tests {
     use glam::DVec2;
 
-    use super::first_crossing;
+    use super::{encloses, first_contact, first_crossing};
+
+    #[test]
+    fn outlines_that_meet_are_told_from_those_inside_and_outside() {
+        let square = |x: f64, y: f64, size: f64| {
+            outline(&[(x, y), (x + size, y), (x + size, y + size), (x, y + size)])
+        };
+        let apart = [square(0.0, 0.0, 4.0), square(1.0, 1.0, 1.0), square(2.5, 2.5, 1.0)];
+        assert_eq!(first_contact(&apart), None);
+        assert!(encloses(&apart[0], apart[1][0]) && !encloses(&apart[1], apart[2][0]));
+        assert!(!encloses(&apart[1], apart[0][0]) && !encloses(&apart[1], DVec2::new(0.5, 1.5)));
+        let crossing =
+            [square(0.0, 0.0, 4.0), square(1.0, 1.0, 1.0), square(1.5, 1.5, 1.0), square(3.5, 3.5, 1.0)];
+        let contact = first_contact(&crossing).unwrap();
+        assert_eq!((contact.first, contact.second), (0, 3));
+        assert_eq!(first_contact(&crossing[1..3]).map(|found| (found.first, found.second)), Some((0, 1)));
+        let touching = [square(0.0, 0.0, 1.0), square(1.0, 0.25, 0.5)];
+        assert!(
+            first_contact(&touching).is_some()
+                && first_contact(&[touching[0].clone(), touching[0].clone()]).is_some()
+        );
+    }
 
     fn outline(points: &[(f64, f64)]) -> Vec<DVec2> {
         points.iter().map(|(x, y)| DVec2::new(*x, *y)).collect()

@@ -17,7 +17,7 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 
-pub use crossing::{Crossing, first_crossing};
+pub use crossing::{Contact, Crossing, encloses, first_contact, first_crossing};
 pub use cuboid::cuboid;
 pub use discretize::{Density, Station, arc_lengths, discretize};
 pub use extrude::{Extrusion, extrude};
