@@ -75,7 +75,9 @@ pub fn compile(document: &Document, files: &dyn Files, options: &Options) -> Res
             file: &file,
             measure: options.measure,
         };
-        Some(measured(&written, &built.model, &shapes, &about, &spec).map_err(fail)?)
+        let report = measured(&written, &built.model, &shapes, &about, &spec).map_err(fail)?;
+        warnings.extend(beyond_bound(&report, &shapes, &built));
+        Some(report)
     };
     Ok(Compiled { bytes: written.bytes, file, report, warnings: document.diagnostics(warnings) })
 }
@@ -181,6 +183,22 @@ fn imprecise(name: &str, (bound, rounding, tolerance): (f64, f64, f64)) -> Diagn
     );
     Diagnostic::warning(Code::BeyondPrecision, message)
         .help("model it near the origin and let a node carry it to its place, or write a coarser `tolerance`")
+}
+
+/// Shapes where dense sampling finds more than the bound.
+fn beyond_bound(report: &Report, shapes: &[ShapeHandle], built: &Built) -> Vec<Diagnostic> {
+    let beyond = |((name, facts), shape): ((&String, &report::ShapeFacts), &ShapeHandle)| {
+        let (found, bound) = (facts.deviation.measured?, facts.deviation.bound);
+        (found > bound * (1.0 + 1e-9)).then(|| {
+            let message = format!(
+                "shape `{name}`: dense sampling finds {found:.3e} m from the true surface, more than the bound of {bound:.3e} m"
+            );
+            Diagnostic::warning(Code::TightBend, message)
+                .at(place(built, *shape), "this shape")
+                .help("where a section reaches beyond the center of a bend, or a path crosses itself, the surface folds over itself and distances to it mean little")
+        })
+    };
+    report.shapes.iter().zip(shapes).filter_map(beyond).collect()
 }
 
 fn unwritable(error: &SceneError, built: &Built) -> Diagnostic {

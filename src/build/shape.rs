@@ -2,11 +2,12 @@
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
+use super::profile::show;
 use super::{Builder, placement};
 use crate::geometry::curve::{AnyCurve, Curve as _, EllipseArc, Polyline, Side};
 use crate::geometry::mesh;
 use crate::geometry::mesh::PolygonMesh;
-use crate::geometry::tessellate::{Extrusion, Revolution, Sweep};
+use crate::geometry::tessellate::{Extrusion, Revolution, Station, Sweep};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, Count, Shape as Kind, ShapeDefinition, ShapeReference};
@@ -162,6 +163,7 @@ impl Builder<'_> {
         let path = self.curve_of(&sweep.path);
         let (profile, path) = (profile?, path?);
         self.check_path(&path, sweep.path.span())?;
+        self.check_bends(&profile.stations, &path, sweep.path.span());
         Some(Recipe::Sweep(Sweep {
             profile: profile.curve,
             path,
@@ -192,6 +194,33 @@ impl Builder<'_> {
             }
         }
         Some(())
+    }
+
+    /// Warns where the section reaches beyond the center of a bend: the surface folds over itself there.
+    fn check_bends(&mut self, profile: &[Station], path: &AnyCurve, span: Span) {
+        const SAMPLES: u32 = 256;
+        let reach = profile.iter().map(|station| station.point.truncate().length()).fold(0.0, f64::max);
+        let domain = path.domain();
+        let radius = |t: f64| {
+            let jet = path.evaluate(t, Side::After);
+            let speed = jet.first.length();
+            speed * speed * speed / jet.first.cross(jet.second).length()
+        };
+        let places = (0..SAMPLES).map(|k| domain.at((f64::from(k) + 0.5) / f64::from(SAMPLES)));
+        let tightest = places.map(|t| (radius(t), t)).filter(|(radius, _)| radius.is_finite());
+        let Some((radius, t)) = tightest.min_by(|a, b| a.0.total_cmp(&b.0)) else { return };
+        if radius < reach {
+            let message = format!(
+                "the section may be too wide for its path: it reaches {} to its sides, and the path bends with a radius of {} at parameter {}",
+                show(reach),
+                show(radius),
+                show(t)
+            );
+            let report = Diagnostic::warning(Code::TightBend, message)
+                .at(span, "bends more tightly than the section is wide")
+                .help("make the section smaller or the bend wider: beyond the center of the bend the surface folds over itself");
+            self.report(report);
+        }
     }
 
     fn mesh(&mut self, mesh: &spec::Mesh, span: Span) -> Option<Recipe> {

@@ -14,8 +14,9 @@ use super::Outcome;
 use super::arguments::Bake;
 use super::output::Printer;
 use super::project::{Task, reason, tasks};
+use super::told::Told;
 use crate::compile::{Compiled, Options, compile};
-use crate::report::Kind;
+use crate::report::{DeviationFacts, Kind, Report};
 
 /// Bakes all documents; one that fails does not stop the others.
 pub(crate) fn run(bake: &Bake, printer: &Printer) -> Outcome {
@@ -161,6 +162,7 @@ impl Worker<'_> {
             return Outcome::Good;
         }
         let mut outcome = Outcome::Good;
+        let mut told = Told::default();
         let variants = std::iter::once(None).chain(document.variants().into_iter().map(Some));
         for variant in variants {
             let options = Options {
@@ -172,8 +174,13 @@ impl Worker<'_> {
                 measure: self.bake.measure,
             };
             outcome = outcome.max(match compile(&document, &files, &options) {
-                Ok(compiled) => self.write(task, compiled, messages),
+                Ok(mut compiled) => {
+                    compiled.warnings =
+                        told.only_new(&document, compiled.warnings, options.variant.as_deref());
+                    self.write(task, compiled, messages)
+                }
                 Err(list) => {
+                    let list = told.only_new(&document, list, options.variant.as_deref());
                     messages.push(Message::Diagnostics(list));
                     Outcome::Errors
                 }
@@ -195,8 +202,10 @@ impl Worker<'_> {
         let object = json!({
             "asset": target.display().to_string(),
             "spec": task.path,
+            "variant": compiled.report.as_ref().and_then(|report| report.variant.clone()),
             "bytes": compiled.bytes.len(),
             "triangles": compiled.report.as_ref().map(|report| report.totals.triangles),
+            "deviation": compiled.report.as_ref().and_then(worst),
         });
         messages.push(Message::Result(line(&target, &compiled), object));
         if !compiled.warnings.is_empty() {
@@ -206,12 +215,16 @@ impl Worker<'_> {
     }
 }
 
+/// The greatest deviation of all shapes.
+fn worst(report: &Report) -> Option<DeviationFacts> {
+    let deviations = report.shapes.values().map(|shape| shape.deviation);
+    deviations.max_by(|a, b| a.bound.total_cmp(&b.bound))
+}
+
 fn line(target: &Path, compiled: &Compiled) -> String {
     let bytes = size(compiled.bytes.len());
     let Some(report) = &compiled.report else { return format!("{}  {bytes}", target.display()) };
-    let deviations = report.shapes.values().map(|shape| shape.deviation);
-    let worst = deviations.max_by(|a, b| a.bound.total_cmp(&b.bound));
-    let accuracy = worst.map_or_else(String::new, |deviation| {
+    let accuracy = worst(report).map_or_else(String::new, |deviation| {
         let how = match deviation.kind {
             Kind::Exact => "exact".to_owned(),
             Kind::Proved => format!("within {} (proved)", metres(deviation.bound)),

@@ -6,6 +6,7 @@ use super::Outcome;
 use super::arguments::Check;
 use super::output::Printer;
 use super::project::{reason, tasks};
+use super::told::Told;
 use crate::compile::{Options, compile};
 
 /// Checks all documents, to the end of the pipeline: what passes here can be baked.
@@ -33,6 +34,7 @@ pub(crate) fn run(check: &Check, printer: &Printer) -> Outcome {
             continue;
         }
         let mut good = true;
+        let mut told = Told::default();
         for variant in std::iter::once(None).chain(document.variants().into_iter().map(Some)) {
             let options = Options {
                 variant,
@@ -42,9 +44,12 @@ pub(crate) fn run(check: &Check, printer: &Printer) -> Outcome {
                 ..Options::default()
             };
             match compile(&document, &files, &options) {
-                Ok(compiled) => printer.diagnostics(&compiled.warnings),
-                Err(list) => {
+                Ok(compiled) => {
+                    let list = told.only_new(&document, compiled.warnings, options.variant.as_deref());
                     printer.diagnostics(&list);
+                }
+                Err(list) => {
+                    printer.diagnostics(&told.only_new(&document, list, options.variant.as_deref()));
                     good = false;
                 }
             }

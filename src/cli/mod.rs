@@ -11,6 +11,7 @@ mod output;
 mod project;
 mod sample;
 mod starter;
+mod told;
 
 use std::process::ExitCode;
 
@@ -66,5 +67,6 @@ pub fn run() -> ExitCode {
         Command::Inspect(inspect) => inspect::run(&inspect, &printer),
         Command::Completions(completions) => describe::completions(&completions),
     };
+    let outcome = if output::all_printed() { outcome } else { outcome.max(Outcome::Files) };
     ExitCode::from(outcome.code())
 }

@@ -1,11 +1,20 @@
 //! Printing, for people and for programs.
 
 use std::io::{IsTerminal as _, Write as _};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde_json::{Value, json};
 
 use super::arguments::{Color, Common, Format};
 use crate::language::diagnostic::Diagnostics;
+
+/// Whether something that was to be printed is lost.
+static LOST: AtomicBool = AtomicBool::new(false);
+
+/// Whether all that was to be printed came through, or its reader went away.
+pub(crate) fn all_printed() -> bool {
+    !LOST.load(Ordering::Relaxed)
+}
 
 /// Prints as the common arguments ask.
 #[derive(Clone, Copy, Debug)]
@@ -34,14 +43,20 @@ impl Printer {
         match self.format {
             Format::Text if self.quiet => {}
             Format::Text => self.raw(&format!("{text}\n")),
+            Format::Json if self.quiet => {}
             Format::Json => self.raw(&format!("{object}\n")),
         }
     }
 
     /// What a command is asked to print, as it is.
     pub(crate) fn raw(&self, text: &str) {
-        // A closed pipe (`kiln schema | head`) is no reason to fail.
-        let _ = std::io::stdout().lock().write_all(text.as_bytes());
+        let mut out = std::io::stdout().lock();
+        if let Err(error) = out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+            // A closed pipe (`kiln schema | head`) is no reason to fail; a full disk is.
+            if error.kind() != std::io::ErrorKind::BrokenPipe && !LOST.swap(true, Ordering::Relaxed) {
+                self.complain(&format!("error: cannot print: {error}\n"));
+            }
+        }
     }
 
     /// Errors and warnings of a document.

@@ -53,6 +53,9 @@ pub(crate) fn tasks(documents: &Documents, printer: &Printer) -> Option<Vec<Task
             }
         }
     }
+    // A document that is named twice is meant once.
+    let mut seen = std::collections::BTreeSet::new();
+    tasks.retain(|task| seen.insert((task.root.clone(), task.path.clone())));
     good.then_some(tasks)
 }
 

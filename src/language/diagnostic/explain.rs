@@ -166,8 +166,9 @@ examples! {
     BadHole: "Holes lie inside their outline and apart from each other.",
         "[shape.a.extrude]\nprofile = { circle = { radius = 1 } }\nholes = [{ circle = { radius = 0.5, center = [1, 0] } }]\nheight = 1" =>
         "[shape.a.extrude]\nprofile = { circle = { radius = 1 } }\nholes = [{ circle = { radius = 0.5 } }]\nheight = 1";
-    TightBend: "The mesh could not be brought within the tolerance of the true surface, most often beside a sharp corner of a path. The report carries the distance that was reached. Round the corner, or make the section smaller.",
-        "" => "";
+    TightBend: "A section that reaches beyond the center of a bend of its path makes a surface that folds over itself. Beside sharp corners the mesh may also stay further from such a surface than its tolerance; the report carries the distance that was reached. Widen the bend, round the corner, or make the section smaller.",
+        "[shape.a]\nsegments = 32\n[shape.a.sweep]\nprofile = { circle = { radius = 1 } }\npath = { circle = { radius = 0.5 } }" =>
+        "[shape.a.sweep]\nprofile = { circle = { radius = 0.4 } }\npath = { circle = { radius = 0.5 } }";
     BadMesh: "Polygons refer to points that are not there or have coordinates that are no numbers.",
         "" => "";
     BeyondPrecision: "A glTF file holds positions in single precision: about seven digits. Far from the origin, or where the tolerance is very fine, rounding alone moves points by more than half the tolerance. Model near the origin and let a node carry the shape to its place, or write a coarser tolerance.",

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use crate::language::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::language::document::evaluate::evaluate;
 use crate::language::document::overlay::overlay;
+use crate::language::source::Span;
 use crate::language::source::{Files, SourceMap};
 use crate::language::spec::{Spec, read_spec};
 use crate::language::suggest::closest;
@@ -42,10 +43,14 @@ impl Document {
         Err(document.diagnostics(found))
     }
 
-    /// Whether it defines nothing that could be shown: materials and curves for others to include.
+    /// Whether it is made for others to include: it defines curves or materials and nothing that could be shown.
+    /// A document with a word that is not known is none; it is to be told.
     #[must_use]
     pub fn is_library(&self) -> bool {
-        !["shape", "node"].iter().any(|family| self.base.entries.contains_key(*family))
+        const OF_LIBRARIES: [&str; 5] = ["unit", "up", "include", "parameters", "curve"];
+        let known = |key: &String| OF_LIBRARIES.contains(&key.as_str()) || key == "material";
+        let defines = ["curve", "material"].iter().any(|family| self.base.entries.contains_key(*family));
+        defines && self.base.entries.keys().all(known)
     }
 
     /// The names of the variants, in the order of the text.
@@ -62,7 +67,15 @@ impl Document {
 
     /// Diagnostics on this document, sorted.
     #[must_use]
-    pub fn diagnostics(&self, list: Vec<Diagnostic>) -> Diagnostics {
+    pub fn diagnostics(&self, mut list: Vec<Diagnostic>) -> Diagnostics {
+        // What has no place of its own concerns the document as a whole, and names it by its first line.
+        let start = self.sources.files().next().map_or(Span::NONE, |main| self.sources.span(main, 0..0));
+        for one in &mut list {
+            if one.place().is_none_or(Span::is_none) {
+                one.labels.clear();
+                *one = one.clone().at(start, "");
+            }
+        }
         Diagnostics::new(list, Arc::clone(&self.sources))
     }
 

@@ -41,7 +41,7 @@ impl Default for Limits {
 }
 
 table! {
-    /// How much this document may ask for. A document can only lower the limits; the command line may raise them.
+    /// How much this document may ask for. A document can only lower the limits.
     "limits" pub(crate) LimitFields {
         /// Most triangles of one asset; 50 million when it is not written.
         triangles: Option<Sp<u64>>;
@@ -132,7 +132,7 @@ fn lower(name: &str, field: Option<Sp<u64>>, outer: u64, reader: &mut Reader<'_>
     let message = format!("a document can only lower `{name}`: {} is above {outer}", field.value);
     let report = Diagnostic::error(Code::LimitRaised, message)
         .at(field.span, format!("at most {outer}"))
-        .help("the command line may raise a limit");
+        .help("leave it out, or write less");
     reader.report(report);
     outer
 }
