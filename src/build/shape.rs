@@ -198,7 +198,8 @@ impl Builder<'_> {
 
     /// Warns where the section reaches beyond the center of a bend: the surface folds over itself there.
     fn check_bends(&mut self, profile: &[Station], path: &AnyCurve, span: Span) {
-        const SAMPLES: u32 = 256;
+        // A prime, so that a path of many equal bends is not met at equal places.
+        const SAMPLES: u32 = 1021;
         let reach = profile.iter().map(|station| station.point.truncate().length()).fold(0.0, f64::max);
         let domain = path.domain();
         let radius = |t: f64| {
