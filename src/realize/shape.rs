@@ -339,15 +339,20 @@ pub(super) fn wants_uv(model: &Model, handle: ShapeHandle, overrides: &[Option<M
     }
 }
 
+/// Whether a material with a texture is on the shape or a part of it. Shapes come after their parts, so one
+/// pass over those before it is enough however often parts share parts.
 fn shows_texture(model: &Model, handle: ShapeHandle) -> bool {
-    let shape = model.shape(handle);
     let textured = |material: &MaterialHandle| model.material(*material).has_texture();
-    shape.options.material.iter().any(textured)
-        || match &shape.recipe {
-            Recipe::Assembly(parts) => parts.iter().any(|(part, _)| shows_texture(model, *part)),
+    let mut shows: Vec<bool> = Vec::with_capacity(handle.0 as usize + 1);
+    for shape in &model.shapes[..=handle.0 as usize] {
+        let of_parts = match &shape.recipe {
+            Recipe::Assembly(parts) => parts.iter().any(|(part, _)| shows[part.0 as usize]),
             Recipe::Polygons { materials, .. } => materials.iter().flatten().any(textured),
             _ => false,
-        }
+        };
+        shows.push(of_parts || shape.options.material.iter().any(textured));
+    }
+    shows.pop().unwrap_or(false)
 }
 
 /// One run for each material, in the order of their first use.

@@ -53,3 +53,38 @@ fn found(case: &Case, files: MemoryFiles) -> Diagnostics {
 fn every_case_gives_the_messages_beside_it() {
     check_folder("tests/bake/cases", 50, found);
 }
+
+/// Forty-eight groups of twice the one before are refused at once, with a texture to look for or without.
+#[test]
+fn doubling_groups_are_refused_at_once() {
+    let mut text = "[shape.s0.box]\nsize = [1, 1, 1]\n".to_owned();
+    for level in 1..48 {
+        let below = level - 1;
+        text.push_str(&format!("[shape.s{level}]\nat = [{level}, 0, 0]\n[shape.s{level}.group]\nof = [\"s{below}\", \"s{below}\"]\n"));
+    }
+    let files = MemoryFiles::new().with("case.toml", text);
+    let document = Document::load("case.toml", &files).expect("it can be read");
+    let options = Options { name: "case".to_owned(), ..Options::default() };
+    let found = kiln::compile(&document, &files, &options).expect_err("it is refused");
+    assert!(found.iter().any(|one| one.code.text() == "K0901"), "{}", found.render(false));
+}
+
+/// Chords over whole turns of a path look straight to samples; the bound must not believe them.
+#[test]
+fn paths_that_wind_many_times_are_followed() {
+    for turns in [32, 64, 128] {
+        for segments in ["", "[shape.a]\nsegments = [8, 16]\n"] {
+            let text = format!(
+                "tolerance = 0.01\n{segments}[shape.a.sweep]\nprofile = {{ circle = {{ radius = 0.02 }} }}\npath = {{ helix = {{ radius = 1, pitch = 0.1, turns = {turns} }} }}\n"
+            );
+            let files = MemoryFiles::new().with("case.toml", text);
+            let document = Document::load("case.toml", &files).expect("it can be read");
+            let options = Options { name: "case".to_owned(), measure: true, ..Options::default() };
+            let compiled = kiln::compile(&document, &files, &options).expect("it bakes");
+            let deviation = compiled.report.expect("a report").shapes["a"].deviation;
+            let measured = deviation.measured.expect("it was measured");
+            assert!(!segments.is_empty() || deviation.bound <= 0.01, "{turns}: {deviation:?}");
+            assert!(measured <= deviation.bound, "{turns} {segments}: {deviation:?}");
+        }
+    }
+}

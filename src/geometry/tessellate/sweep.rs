@@ -263,7 +263,10 @@ impl Plan {
                 continue;
             }
             let middle = surface.section((from + to) / 2.0, Side::After);
-            e2 = e2.max(self.cell_deviation(row, &middle));
+            let sampled = self.cell_deviation(row, &middle);
+            // A chord over whole turns looks short to samples: then the path's own bound speaks.
+            let bend = surface.path.chord_deviation(from, to);
+            e2 = e2.max(if bend > 2.0 * GUARD * sampled { bend } else { sampled });
         }
         let evidence = match (e1, e2) {
             (0.0, 0.0) => Evidence::Exact,
