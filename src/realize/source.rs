@@ -3,10 +3,10 @@
 use glam::{DAffine3, DVec3};
 
 use super::shape::frame_map;
-use crate::geometry::curve::{AnyCurve, Curve as _, Side, distance_within};
+use crate::geometry::curve::{AnyCurve, Curve as _, Side, nearest_within};
 use crate::geometry::mesh;
 use crate::geometry::number::{Bounds, hypot};
-use crate::geometry::surface::SweptSurface;
+use crate::geometry::surface::{Surface as _, SweptSurface};
 use crate::geometry::tessellate::{Density, discretize};
 use crate::model::{Model, Recipe, ShapeHandle};
 
@@ -145,8 +145,14 @@ fn ranges(curve: &AnyCurve, corners: [f64; 3]) -> Vec<(f64, f64)> {
 }
 
 fn distance_near(curve: &AnyCurve, point: DVec3, corners: [f64; 3]) -> f64 {
+    nearest_near(curve, point, corners).0
+}
+
+/// Distance and parameter of the nearest point around the corners.
+fn nearest_near(curve: &AnyCurve, point: DVec3, corners: [f64; 3]) -> (f64, f64) {
     let ranges = ranges(curve, corners);
-    ranges.iter().map(|(from, to)| distance_within(curve, point, *from, *to)).fold(f64::INFINITY, f64::min)
+    let found = ranges.iter().map(|(from, to)| nearest_within(curve, point, *from, *to));
+    found.fold((f64::INFINITY, corners[0]), |best, next| if next.0 < best.0 { next } else { best })
 }
 
 impl Source {
@@ -216,11 +222,41 @@ fn swept_within(surface: &SweptSurface, point: DVec3, stretch: &Stretch, across:
     let section = surface.section(v, side(v));
     let away = point - section.origin;
     let flat = DVec3::new(away.dot(section.frame.side), away.dot(section.frame.up), 0.0);
-    let across = distance_near(&surface.profile, flat, across);
+    let (across, u) = nearest_near(&surface.profile, flat, across);
     let along = away.dot(section.frame.along);
     let beyond = (stretch.open_above && v == stretch.high && along > 0.0)
         || (stretch.open_below && v == stretch.low && along < 0.0);
-    if beyond { across } else { hypot(across, along) }
+    let found = if beyond { across } else { hypot(across, along) };
+    if section.twist == 0.0 { found } else { found.min(leaning_distance(surface, point, stretch, (u, v))) }
+}
+
+/// A twisted surface leans against the planes of its sections: the nearest point is looked for along both
+/// parameters, by Gauss and Newton's method from a point near by.
+fn leaning_distance(
+    surface: &SweptSurface,
+    point: DVec3,
+    stretch: &Stretch,
+    (mut u, mut v): (f64, f64),
+) -> f64 {
+    let domain = surface.domain_u();
+    let mut nearest = f64::INFINITY;
+    for _ in 0..8 {
+        let jet = surface.evaluate(u, v);
+        let away = point - jet.point;
+        if away.length() >= nearest {
+            break;
+        }
+        nearest = away.length();
+        let (uu, uv, vv) = (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());
+        let (by_u, by_v) = (away.dot(jet.du), away.dot(jet.dv));
+        let determinant = uu * vv - uv * uv;
+        if determinant <= 0.0 {
+            break;
+        }
+        u = (u + (by_u * vv - by_v * uv) / determinant).clamp(domain.start, domain.end);
+        v = (v + (by_v * uu - by_u * uv) / determinant).clamp(stretch.low, stretch.high);
+    }
+    nearest
 }
 
 /// A box around each shape of a model, its placement applied, in the document's unit.

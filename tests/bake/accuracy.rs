@@ -134,3 +134,86 @@ fn rounding_counts_in_the_bound() {
     assert!(near.only().deviation.bound <= 0.001, "{:?}", near.only().deviation);
     assert!(near.compiled.warnings.is_empty());
 }
+
+/// Samples at whole turns all look alike: neither a coil nor a twist may pass for a straight line.
+#[test]
+fn whole_turns_are_not_taken_for_straight() {
+    let mut last = 0;
+    for turns in [4, 8, 32] {
+        let baked = bake(&format!(
+            "tolerance = 0.02\n[shape.a.sweep]\nprofile = {{ circle = {{ radius = 0.1 }} }}\n\
+             path = {{ helix = {{ radius = 1, pitch = 0.5, turns = {turns} }} }}"
+        ));
+        let (shape, length) = (baked.only(), f64::from(turns) * (4.0 * PI * PI + 0.25_f64).sqrt());
+        let measured = shape.deviation.measured.expect("asked for");
+        assert!(measured <= shape.deviation.bound && shape.deviation.bound <= 0.02, "{:?}", shape.deviation);
+        let volume = shape.facts.volume.expect("closed");
+        assert!((volume / (PI * 0.01 * length) - 1.0).abs() < 0.3, "{turns} turns: {volume}");
+        assert!(shape.facts.triangles > last, "{turns} turns: {} triangles", shape.facts.triangles);
+        last = shape.facts.triangles;
+    }
+    for twist in [360, 720, 1440, 14400] {
+        let baked = bake(&format!(
+            "tolerance = 0.005\n[shape.a]\n[shape.a.sweep]\nprofile = {{ ellipse = {{ radii = [0.2, 0.1] }} }}\n\
+             path = {{ line = {{ from = [0, 0, 0], to = [0, 0, 1] }} }}\ntwist = {twist}"
+        ));
+        let shape = baked.only();
+        let measured = shape.deviation.measured.expect("asked for");
+        assert!(
+            measured <= shape.deviation.bound && shape.deviation.bound <= 0.005,
+            "{twist}: {:?}",
+            shape.deviation
+        );
+        // The least that one radian for each row allows.
+        assert!(
+            shape.facts.triangles > 20 * twist / 58,
+            "{twist} degrees: {} triangles",
+            shape.facts.triangles
+        );
+    }
+}
+
+/// A document's tolerance is that of the result, whatever maps a shape passes through.
+#[test]
+fn scaled_copies_keep_the_tolerance_of_the_document() {
+    for text in [
+        "[shape.a]\nscale = 10\n[shape.a.copy]\nof = { sphere = { radius = 0.1 } }",
+        "[shape.a]\nscale = [1, 8, 2]\n[shape.a.array]\nof = { copy = { of = \"b\" } }\ncount = 2\noffset = [3, 0, 0]\n\
+         [shape.b]\nscale = 5\n[shape.b.sphere]\nradius = 0.2",
+        "[shape.a]\nscale = 10\ntolerance = 0.001\n[shape.a.group]\nof = [{ sphere = { radius = 0.1 } }]",
+    ] {
+        let baked = bake(&format!("tolerance = 0.001\n{text}"));
+        let deviation = baked.only().deviation;
+        assert!(deviation.bound <= 0.001 && deviation.bound > 0.0001, "{text}: {deviation:?}");
+        assert!(deviation.measured.expect("asked for") <= deviation.bound, "{text}: {deviation:?}");
+        assert!((deviation.tolerance.expect("a tolerance") - 0.001).abs() < 1e-9, "{text}: {deviation:?}");
+    }
+}
+
+/// Twisted surfaces lean against their sections: the bound holds for them too.
+#[test]
+fn bounds_hold_on_twisted_sections() {
+    let (line, helix, bent) = (
+        "line = { from = [0, 0, 0], to = [0, 0, 1] }",
+        "helix = { radius = 1, pitch = 0.3, turns = 0.7 }",
+        "natural-spline = { points = [[0, 0, 0], [1, 0.4, 0], [1, 1.3, 1], [0, 1, 1.5]] }",
+    );
+    for profile in [
+        "ellipse = { radii = [0.2, 0.1] }",
+        "ellipse = { radii = [0.2, 0.02] }",
+        "polyline = { points = [[0, 0], [0.2, 0], [0.2, 0.1], [0, 0.1]], closed = true }",
+        "line = { from = [-0.1, 0], to = [0.3, 0.05] }",
+    ] {
+        for (path, twist) in [(line, 50), (line, 1440), (line, 5000), (helix, 50), (helix, 1440), (bent, 360)]
+        {
+            let text = format!(
+                "tolerance = 0.02\n[shape.a.sweep]\nprofile = {{ {profile} }}\npath = {{ {path} }}\ntwist = {twist}"
+            );
+            let options = Options { measure: true, ..Options::default() };
+            let compiled = compile(&text, &options).unwrap_or_else(|found| panic!("{found}"));
+            let deviation = compiled.report.expect("a report was asked for").shapes[0].deviation;
+            assert!(deviation.bound <= 0.02, "{text}: {deviation:?}");
+            assert!(deviation.measured.expect("asked for") <= deviation.bound, "{text}: {deviation:?}");
+        }
+    }
+}

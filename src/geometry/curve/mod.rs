@@ -24,7 +24,7 @@ pub use ellipse::EllipseArc;
 pub use helix::Helix;
 pub use length::{length, length_between, length_of_step};
 pub use mapped::{Reversed, Transformed};
-pub use nearest::distance_within;
+pub use nearest::{distance_within, nearest_within};
 pub use path::{Continuity, Path, classify};
 pub use polyline::Polyline;
 pub use spline::{Parametrization, SplineError, interpolate, interpolate_closed, parameters};

@@ -10,6 +10,12 @@ use super::{Curve, Side};
 /// the samples beside it. The result is never less than the true distance.
 #[must_use]
 pub fn distance_within(curve: &impl Curve, point: DVec3, from: f64, to: f64) -> f64 {
+    nearest_within(curve, point, from, to).0
+}
+
+/// As [`distance_within`], with the parameter of the nearest point.
+#[must_use]
+pub fn nearest_within(curve: &impl Curve, point: DVec3, from: f64, to: f64) -> (f64, f64) {
     const SAMPLES: u32 = 8;
     let at = |k: u32| from + (to - from) * f64::from(k) / f64::from(SAMPLES);
     let square = |t: f64| curve.evaluate(t, Side::Before).point.distance_squared(point);
@@ -25,14 +31,14 @@ pub fn distance_within(curve: &impl Curve, point: DVec3, from: f64, to: f64) -> 
         if bend <= 0.0 {
             break;
         }
-        t = (t - slope / bend).clamp(low.min(high), low.max(high));
-        let reached = square(t);
+        let next = (t - slope / bend).clamp(low.min(high), low.max(high));
+        let reached = square(next);
         if reached >= nearest {
             break;
         }
-        nearest = reached;
+        (t, nearest) = (next, reached);
     }
-    nearest.sqrt()
+    (nearest.sqrt(), t)
 }
 
 #[cfg(test)]

@@ -101,7 +101,7 @@ impl FrameField {
         let straight = self.path.chord_deviation(start.t, end) == 0.0;
         let mut steps = if straight { 1 } else { self.first_steps(start.t, end) };
         let mut walked = self.walk(start, end, steps);
-        let most = steps.max(8192);
+        let most = steps.saturating_mul(64).clamp(8192, 1 << 20);
         while !straight && steps < most {
             steps *= 2;
             let finer = self.walk(start, end, steps);
@@ -259,8 +259,15 @@ mod tests {
     #[test]
     fn on_a_helix_the_frame_turns_back_against_the_torsion() {
         // Against the Frenet frame a rotation-minimizing frame turns by minus the torsion times the length.
+        // Steps of whole turns would all look alike.
+        for turns in [2.0, 32.0, 64.0] {
+            assert_turns_back(turns);
+        }
+    }
+
+    fn assert_turns_back(turns: f64) {
         let (radius, pitch) = (1.0, 1.0);
-        let helix = Helix { radius, end_radius: radius, pitch, turns: 2.0 };
+        let helix = Helix { radius, end_radius: radius, pitch, turns };
         let field = FrameField::new(&AnyCurve::Helix(helix.clone()), 0.0);
         let rise = pitch / core::f64::consts::TAU;
         let speed = (radius * radius + rise * rise).sqrt();
@@ -273,7 +280,7 @@ mod tests {
         };
         let start = angle_to_normal(0.0);
         for k in 1..=64 {
-            let t = f64::from(k) / 32.0;
+            let t = turns * f64::from(k) / 64.0;
             let expected = start + torsion * speed * core::f64::consts::TAU * t;
             let found = angle_to_normal(t);
             assert!((sin(found) - sin(expected)).abs() < 1e-8, "{t}");
