@@ -134,7 +134,8 @@ impl<'a> Maker<'a> {
             mesh: made.mesh,
             materials: vec![None],
             deviation: made.deviation,
-            tolerance: shape.options.density.is_none().then_some(tolerance),
+            // In the space before the placement, which scales it back with the rest.
+            tolerance: shape.options.density.is_none().then_some(tolerance / stretch),
             notes: Vec::new(),
         };
         let made = match &shape.recipe {

@@ -281,6 +281,19 @@ impl Plan {
         Deviation { bound: e1 + e2 * MARGIN, evidence }
     }
 
+    /// Greatest distance to the surface from the cells between a row and the next.
+    fn row_deviation(&self, surface: &SweptSurface, row: usize, middle: &Section) -> f64 {
+        if middle.twist == 0.0 {
+            return self.plain_cell_deviation(row, middle);
+        }
+        // Twisted cells are saddles: their triangles may be furthest away before and behind the middle.
+        let (from, to) = (self.path[row].t, self.path[row + 1].t);
+        let lean = 1.0 + TWIST_MARGIN * surface.frames.turn_between(from, to).abs();
+        let section = |part: f64| surface.section(from + (to - from) * part, Side::After);
+        let deviations = [0.25, 0.5, 0.75].map(|part| self.cell_deviation(row, &section(part), part));
+        deviations.into_iter().fold(0.0, f64::max) * lean
+    }
+
     /// Greatest distance to the surface from chords and diagonals between two rows, at `part` of their length
     /// where `section` stands.
     fn cell_deviation(&self, row: usize, section: &Section, part: f64) -> f64 {
