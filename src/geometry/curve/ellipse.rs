@@ -67,6 +67,13 @@ impl EllipseArc {
         (half + spread).sqrt()
     }
 
+    /// Whether it is an arc of a circle, but for rounding.
+    fn is_round(&self, reach: f64) -> bool {
+        let square = reach * reach;
+        let same = (self.x.length_squared() - self.y.length_squared()).abs() <= 1e-12 * square;
+        same && self.x.dot(self.y).abs() <= 1e-12 * square
+    }
+
     fn angle(&self, t: f64) -> f64 {
         t.clamp(self.from.min(self.to), self.from.max(self.to))
     }
@@ -101,14 +108,34 @@ impl Curve for EllipseArc {
 
     fn chord_deviation(&self, from: f64, to: f64) -> f64 {
         let turn = ((to - from) * (self.to - self.from)).abs();
-        // An ellipse is the affine image of a circle, and so is the midpoint of a chord: its deviation is at
-        // most the sagitta of the unit circle times the greatest half diameter.
-        if turn <= 180.0 {
-            self.reach() * (1.0 - number::cos_degrees(turn / 2.0))
-        } else {
-            2.0 * self.reach()
+        if turn > 180.0 {
+            return 2.0 * self.reach();
         }
+        let rise = number::sin_degrees(turn / 4.0);
+        let drop = 2.0 * rise * rise;
+        let reach = self.reach();
+        if self.is_round(reach) {
+            return reach * drop;
+        }
+        // About the middle m of the range the arc is A cos s + B sin s with the spoke A and the tangent B at
+        // m, and the chord is A cos h + B sin s: they differ by A (cos s - cos h).
+        let middle = self.from + (self.to - self.from) * ((from + to) / 2.0);
+        let (sin, cos) = number::sin_cos_degrees(middle);
+        let (spoke, tangent) = (self.x * cos + self.y * sin, self.y * cos - self.x * sin);
+        chord_height(spoke, tangent, drop, number::tan_degrees(turn / 2.0)).min(reach * drop)
     }
+}
+
+/// How far an arc A c(s) + B s(s) of an ellipse or hyperbola is from its chord, for s from -h to h: the two
+/// differ by A times at most `drop`. Where the arc runs along the chord without turning back, which it does
+/// while the share of A along B times `slope` (the tangent of h, circular or hyperbolic) is at most B, only
+/// the part of A across the chord counts.
+pub(super) fn chord_height(spoke: DVec3, tangent: DVec3, drop: f64, slope: f64) -> f64 {
+    let speed = tangent.length();
+    let direction = tangent / speed;
+    let along = spoke.dot(direction);
+    let across = if along.abs() * slope <= speed { spoke - direction * along } else { spoke };
+    across.length() * drop
 }
 
 #[cfg(test)]

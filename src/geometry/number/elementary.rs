@@ -31,6 +31,8 @@ door! {
     cosh(x) = libm::cosh;
     /// Hyperbolic tangent.
     tanh(x) = libm::tanh;
+    /// The number whose hyperbolic sine is `x`.
+    asinh(x) = libm::asinh;
     /// e to the power `x`.
     exp(x) = libm::exp;
     /// Natural logarithm; NaN below zero.

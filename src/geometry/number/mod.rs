@@ -11,7 +11,7 @@ mod whole;
 
 pub use angle::{cos_degrees, sin_cos_degrees, sin_degrees, tan_degrees};
 pub use elementary::{
-    acos, asin, atan, atan2, cbrt, cos, cosh, exp, hypot, ln, pow, sin, sin_cos, sinh, tan, tanh,
+    acos, asin, asinh, atan, atan2, cbrt, cos, cosh, exp, hypot, ln, pow, sin, sin_cos, sinh, tan, tanh,
 };
 pub use tolerance::{Bounds, single_rounding};
 pub use whole::{floor_count, floor_index, floor_large, single, size};

@@ -6,6 +6,7 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::arc::Arc;
 use crate::language::spec::check::Check;
+use crate::language::spec::conic::{Conic, Hyperbola, Parabola, check_turn};
 use crate::language::spec::construct::{kinds, table};
 use crate::language::spec::path::Path;
 use crate::language::spec::point::{Point, Scale};
@@ -23,8 +24,14 @@ kinds! {
         Polyline(Polyline) = "polyline";
         /// A full circle.
         Circle(Circle) = "circle";
-        /// A full ellipse.
+        /// An ellipse, or a part of one.
         Ellipse(Ellipse) = "ellipse";
+        /// A part of a parabola.
+        Parabola(Parabola) = "parabola";
+        /// A part of a hyperbola.
+        Hyperbola(Hyperbola) = "hyperbola";
+        /// A part of an ellipse, hyperbola or parabola in space.
+        Conic(Conic) = "conic";
         /// A part of a circle.
         Arc(Arc) = "arc";
         /// A screw line that climbs along +y.
@@ -75,13 +82,19 @@ table! {
 }
 
 table! {
-    /// A full ellipse in the x, y plane, its axes along x and y. It starts at the right and turns counterclockwise.
+    /// An ellipse in the x, y plane, its axes along x and y, or a part of it. It starts at the right and turns
+    /// counterclockwise.
     "ellipse" pub Ellipse {
         /// Half of the width and half of the height, in the document's unit.
         radii: Sp<glam::DVec2> => Check::above(0.0);
         /// The center.
         center: Sp<Point> = Point::ORIGIN;
+        /// Where an arc starts, in degrees: the angle on the circle of which this is the stretched image.
+        from: Sp<f64> = 0.0 => Check::within(-3600.0, 3600.0);
+        /// Where an arc ends, in degrees; less than `from` turns clockwise.
+        to: Sp<f64> = 360.0 => Check::within(-3600.0, 3600.0);
     }
+    checked check
 }
 
 table! {
@@ -117,6 +130,13 @@ table! {
         rotate: Sp<DVec3> = DVec3::ZERO;
         /// How far it is moved, in the document's unit.
         at: Sp<DVec3> = DVec3::ZERO;
+    }
+}
+
+impl Ellipse {
+    fn check(&self, _: Span, reader: &mut Reader<'_>) -> bool {
+        let last = if self.to.span.is_none() { self.from.span } else { self.to.span };
+        check_turn(self.from.value, self.to.value, last, reader)
     }
 }
 
