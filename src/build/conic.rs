@@ -74,8 +74,7 @@ impl Builder<'_> {
         for (t, side) in [(domain.start, Side::After), (domain.end, Side::Before)] {
             let jet = curve.evaluate(t, side);
             let greatest = [jet.point, jet.first, jet.second].map(|vector| vector.abs().max_element());
-            // A maximum would pass over what is not a number.
-            if greatest.iter().any(|size| !(*size <= GREATEST)) {
+            if !greatest.iter().all(|size| *size <= GREATEST) {
                 let message = format!("this curve reaches further than {GREATEST:e}");
                 let report = Diagnostic::error(Code::NotFinite, message)
                     .at(span, "too far")
