@@ -9,5 +9,5 @@ mod material;
 mod read;
 mod write;
 
-pub use read::{Geometry, Part, Read, ReadError, Role, read};
+pub use read::{Geometry, Indices, Part, PositionBytes, Read, ReadError, read};
 pub use write::{WriteError, Written, WrittenGeometry, write};

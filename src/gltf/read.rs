@@ -1,6 +1,10 @@
-//! Bytes of a `.glb` file back into numbers, for the report and for `inspect`.
+//! The triangles in the bytes of a `.glb` file, for the report and for `inspect`.
 //!
-//! Reads float positions and indices of triangles; every offset and count is checked against the bytes.
+//! Finds float positions and indices of triangles; every offset and count is checked against the bytes. What stands
+//! together in the file, as our own writer has it, stays where it is; only what other writers scatter is copied.
+
+use std::borrow::Cow;
+use std::ops::Range;
 
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::mesh::{Mode, Semantic};
@@ -13,22 +17,76 @@ use crate::geometry::number::size;
 
 /// A file, read.
 #[derive(Clone, Debug)]
-pub struct Read {
+pub struct Read<'a> {
     /// The JSON document.
     pub root: Root,
     /// For each mesh of the file its triangles.
-    pub geometries: Vec<Geometry>,
+    pub geometries: Vec<Geometry<'a>>,
 }
 
+/// A position as it stands in a file: three little-endian floats.
+pub type PositionBytes = [u8; 12];
+
 /// Triangles of one mesh.
-#[derive(Clone, Debug, Default)]
-pub struct Geometry {
+#[derive(Clone, Debug)]
+pub struct Geometry<'a> {
     /// Positions; primitives that share accessors share them.
-    pub positions: Vec<[f32; 3]>,
-    /// Triangles of all primitives, in order.
-    pub indices: Vec<u32>,
+    pub positions: Cow<'a, [PositionBytes]>,
+    /// Triangles of all primitives, in order; every index is in range.
+    pub indices: Indices<'a>,
     /// Its primitives.
     pub parts: Vec<Part>,
+}
+
+/// Indices as they stand in a file, little-endian.
+#[derive(Clone, Debug)]
+pub enum Indices<'a> {
+    /// Of two bytes.
+    Short(Cow<'a, [[u8; 2]]>),
+    /// Of four bytes.
+    Long(Cow<'a, [[u8; 4]]>),
+}
+
+impl Indices<'_> {
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Short(all) => all.len(),
+            Self::Long(all) => all.len(),
+        }
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The index at a place below [`len`](Self::len).
+    #[must_use]
+    pub fn at(&self, place: usize) -> u32 {
+        match self {
+            Self::Short(all) => u16::from_le_bytes(all[place]).into(),
+            Self::Long(all) => u32::from_le_bytes(all[place]),
+        }
+    }
+
+    fn greatest(&self) -> Option<u32> {
+        match self {
+            Self::Short(all) => all.iter().map(|bytes| u16::from_le_bytes(*bytes)).max().map(u32::from),
+            Self::Long(all) => all.iter().map(|bytes| u32::from_le_bytes(*bytes)).max(),
+        }
+    }
+}
+
+impl Geometry<'_> {
+    /// The position of a vertex.
+    #[must_use]
+    pub fn position(&self, vertex: usize) -> [f32; 3] {
+        let (words, _) = self.positions[vertex].as_chunks::<4>();
+        [words[0], words[1], words[2]].map(f32::from_le_bytes)
+    }
 }
 
 /// One primitive.
@@ -38,15 +96,6 @@ pub struct Part {
     pub triangles: usize,
     /// Its material.
     pub material: Option<usize>,
-}
-
-/// What an accessor is read as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
-    /// Positions.
-    Position,
-    /// Indices.
-    Index,
 }
 
 /// Why a file cannot be read.
@@ -76,61 +125,146 @@ pub enum ReadError {
 ///
 /// # Errors
 /// When the file is broken or holds what is not read here (compressed or quantized data, other primitives).
-pub fn read(bytes: &[u8]) -> Result<Read, ReadError> {
+pub fn read(bytes: &[u8]) -> Result<Read<'_>, ReadError> {
     let container = gltf::Glb::from_slice(bytes).map_err(|error| ReadError::Container(error.to_string()))?;
     let root: Root =
         serde_json::from_slice(&container.json).map_err(|error| ReadError::Json(error.to_string()))?;
-    let binary = container.bin.as_deref().unwrap_or(&[]);
+    let binary = match container.bin {
+        Some(Cow::Borrowed(binary)) => binary,
+        _ => &[],
+    };
     let geometries: Result<Vec<_>, _> =
         (0..root.meshes.len()).map(|mesh| geometry(&root, binary, mesh)).collect();
     let geometries = geometries?;
     Ok(Read { root, geometries })
 }
 
-fn geometry(root: &Root, binary: &[u8], mesh: usize) -> Result<Geometry, ReadError> {
-    let mut all = Geometry::default();
-    let mut bases: Vec<(u32, u32)> = Vec::new();
+/// Where the elements of an accessor stand.
+struct Elements {
+    /// Their bytes, from the first of the first element to the last of the last.
+    range: Range<usize>,
+    /// Bytes from one element to the next.
+    stride: usize,
+    /// Bytes of one element.
+    width: usize,
+    count: usize,
+}
+
+impl Elements {
+    fn tight(&self) -> bool {
+        self.stride == self.width
+    }
+
+    /// The bytes of each element.
+    fn each<'a>(&self, binary: &'a [u8]) -> impl Iterator<Item = &'a [u8]> {
+        let (bytes, stride, width) = (&binary[self.range.clone()], self.stride, self.width);
+        (0..self.count).map(move |k| &bytes[k * stride..k * stride + width])
+    }
+}
+
+/// The indices of one primitive and the vertex that its own vertex 0 is; without indices, its vertices in order.
+struct Primitive {
+    base: u32,
+    vertices: u32,
+    indices: Option<Elements>,
+}
+
+fn geometry<'a>(root: &Root, binary: &'a [u8], mesh: usize) -> Result<Geometry<'a>, ReadError> {
+    let mut clouds: Vec<(usize, u32, Elements)> = Vec::new();
+    let mut primitives = Vec::new();
+    let mut parts = Vec::new();
+    let mut vertices = 0_u32;
     for primitive in &root.meshes[mesh].primitives {
         if primitive.mode != Checked::Valid(Mode::Triangles) {
             return Err(ReadError::Unsupported(format!("a primitive of mesh {mesh} that is not triangles")));
         }
         let position = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
         let position = position.ok_or_else(|| ReadError::Missing(format!("POSITION of mesh {mesh}")))?;
-        let known = bases
-            .iter()
-            .find(|(accessor, _)| *accessor == mesh::index(position.value()))
-            .map(|(_, base)| *base);
-        let base = match known {
-            Some(base) => base,
+        let known = clouds.iter().find(|(accessor, ..)| *accessor == position.value());
+        let (base, own) = match known {
+            Some((_, base, cloud)) => (*base, mesh::index(cloud.count)),
             None => {
-                let base = mesh::index(all.positions.len());
-                read_positions(root, binary, *position, &mut all.positions)?;
-                bases.push((mesh::index(position.value()), base));
-                base
+                let cloud = positions(root, binary, *position)?;
+                let (base, own) = (vertices, mesh::index(cloud.count));
+                vertices = vertices.checked_add(own).ok_or(ReadError::Range(position.value()))?;
+                clouds.push((position.value(), base, cloud));
+                (base, own)
             }
         };
-        let before = all.indices.len();
-        match primitive.indices {
-            Some(indices) => read_indices(root, binary, indices, base, &mut all.indices)?,
-            None => all.indices.extend(base..mesh::index(all.positions.len())),
+        let indices = primitive.indices.map(|index| indices(root, binary, index)).transpose()?;
+        let count = indices.as_ref().map_or(own as usize, |indices| indices.count);
+        if count % 3 != 0 {
+            let message = format!("a primitive of mesh {mesh} that does not hold whole triangles");
+            return Err(ReadError::Unsupported(message));
         }
-        let material = primitive.material.map(|material| material.value());
-        all.parts.push(Part { triangles: (all.indices.len() - before) / 3, material });
+        parts.push(Part {
+            triangles: count / 3,
+            material: primitive.material.map(|material| material.value()),
+        });
+        primitives.push(Primitive { base, vertices: own, indices });
     }
-    let count = mesh::index(all.positions.len());
-    match all.indices.iter().find(|index| **index >= count) {
-        Some(index) => Err(ReadError::Vertex(mesh, *index)),
-        None => Ok(all),
+    let positions = gathered_positions(binary, &clouds);
+    let missing = |index: u32| ReadError::Vertex(mesh, index);
+    let indices = gathered_indices(binary, &primitives).map_err(missing)?;
+    match indices.greatest().filter(|index| *index >= vertices) {
+        Some(index) => Err(missing(index)),
+        None => Ok(Geometry { positions, indices, parts }),
     }
 }
 
-/// The bytes of an accessor and the step between its elements.
-fn elements<'a>(
-    root: &Root,
-    binary: &'a [u8],
-    index: Index<Accessor>,
-    width: usize,
-) -> Result<(&'a [u8], usize, usize), ReadError> {
+/// Positions of all accessors, one after the other; those of a single tight one stay in place.
+fn gathered_positions<'a>(binary: &'a [u8], clouds: &[(usize, u32, Elements)]) -> Cow<'a, [PositionBytes]> {
+    if let [(.., cloud)] = clouds
+        && cloud.tight()
+    {
+        return Cow::Borrowed(binary[cloud.range.clone()].as_chunks().0);
+    }
+    let all = clouds.iter().flat_map(|(.., cloud)| cloud.each(binary));
+    Cow::Owned(all.map(|element| element.as_chunks().0[0]).collect())
+}
+
+/// Indices of all primitives, one after the other; those that stand so in the file stay in place, and are not looked
+/// at here. Of the others one that is no vertex of its primitive is an error.
+fn gathered_indices<'a>(binary: &'a [u8], primitives: &[Primitive]) -> Result<Indices<'a>, u32> {
+    match in_place(primitives) {
+        Some((range, 2)) => return Ok(Indices::Short(Cow::Borrowed(binary[range].as_chunks().0))),
+        Some((range, 4)) => return Ok(Indices::Long(Cow::Borrowed(binary[range].as_chunks().0))),
+        _ => {}
+    }
+    let mut all: Vec<[u8; 4]> = Vec::new();
+    for Primitive { base, vertices, indices } in primitives {
+        let Some(indices) = indices else {
+            all.extend((*base..base + vertices).map(u32::to_le_bytes));
+            continue;
+        };
+        for element in indices.each(binary) {
+            let mut word = [0; 4];
+            word[..element.len()].copy_from_slice(element);
+            let index = u32::from_le_bytes(word);
+            if index >= *vertices {
+                return Err(index);
+            }
+            all.push((base + index).to_le_bytes());
+        }
+    }
+    Ok(Indices::Long(Cow::Owned(all)))
+}
+
+/// The range of all indices and their width, when they follow each other without gaps and count from one vertex.
+fn in_place(primitives: &[Primitive]) -> Option<(Range<usize>, usize)> {
+    let first = primitives.first()?.indices.as_ref()?;
+    let mut end = first.range.start;
+    for Primitive { base, indices, .. } in primitives {
+        let indices = indices.as_ref()?;
+        if *base != 0 || !indices.tight() || indices.width != first.width || indices.range.start != end {
+            return None;
+        }
+        end = indices.range.end;
+    }
+    Some((first.range.start..end, first.width))
+}
+
+fn elements(root: &Root, binary: &[u8], index: Index<Accessor>, width: usize) -> Result<Elements, ReadError> {
     let at = index.value();
     let accessor = root.accessors.get(at).ok_or_else(|| ReadError::Missing(format!("accessor {at}")))?;
     let view = accessor.buffer_view.filter(|_| accessor.sparse.is_none());
@@ -153,10 +287,13 @@ fn elements<'a>(
     };
     let view_end = number(view.byte_offset).saturating_add(view.byte_length.0);
     let end = start.saturating_add(reach);
-    if end > view_end || end > binary.len() as u64 {
+    if stride < width {
+        return Err(ReadError::Unsupported(format!("accessor {at}, whose elements overlap,")));
+    }
+    if end > view_end || end > binary.len() as u64 || u32::try_from(count).is_err() {
         return Err(ReadError::Range(at));
     }
-    Ok((&binary[size(start)..size(end)], stride, count))
+    Ok(Elements { range: size(start)..size(end), stride, width, count })
 }
 
 fn kind(root: &Root, index: Index<Accessor>) -> Option<(ComponentType, Type)> {
@@ -167,36 +304,14 @@ fn kind(root: &Root, index: Index<Accessor>) -> Option<(ComponentType, Type)> {
     }
 }
 
-fn read_positions(
-    root: &Root,
-    binary: &[u8],
-    index: Index<Accessor>,
-    positions: &mut Vec<[f32; 3]>,
-) -> Result<(), ReadError> {
+fn positions(root: &Root, binary: &[u8], index: Index<Accessor>) -> Result<Elements, ReadError> {
     if kind(root, index) != Some((ComponentType::F32, Type::Vec3)) {
         return Err(ReadError::Unsupported(format!("accessor {} as positions", index.value())));
     }
-    let (bytes, stride, count) = elements(root, binary, index, 12)?;
-    positions.reserve_exact(count);
-    let element = |element: &[u8]| {
-        let (words, _) = element.as_chunks::<4>();
-        [words[0], words[1], words[2]].map(f32::from_le_bytes)
-    };
-    if stride == 12 {
-        positions.extend(bytes.chunks_exact(12).map(element));
-    } else {
-        positions.extend((0..count).map(|k| element(&bytes[k * stride..k * stride + 12])));
-    }
-    Ok(())
+    elements(root, binary, index, 12)
 }
 
-fn read_indices(
-    root: &Root,
-    binary: &[u8],
-    index: Index<Accessor>,
-    base: u32,
-    indices: &mut Vec<u32>,
-) -> Result<(), ReadError> {
+fn indices(root: &Root, binary: &[u8], index: Index<Accessor>) -> Result<Elements, ReadError> {
     let unsupported = || ReadError::Unsupported(format!("accessor {} as indices", index.value()));
     let width = match kind(root, index) {
         Some((ComponentType::U8, Type::Scalar)) => 1,
@@ -204,28 +319,5 @@ fn read_indices(
         Some((ComponentType::U32, Type::Scalar)) => 4,
         _ => return Err(unsupported()),
     };
-    let (bytes, stride, count) = elements(root, binary, index, width)?;
-    if count % 3 != 0 {
-        return Err(unsupported());
-    }
-    indices.reserve_exact(count);
-    match width {
-        2 if stride == 2 => {
-            let shorts = bytes.as_chunks::<2>().0.iter();
-            indices.extend(shorts.map(|short| base.saturating_add(u32::from(u16::from_le_bytes(*short)))));
-            return Ok(());
-        }
-        4 if stride == 4 => {
-            let words = bytes.as_chunks::<4>().0.iter();
-            indices.extend(words.map(|word| base.saturating_add(u32::from_le_bytes(*word))));
-            return Ok(());
-        }
-        _ => {}
-    }
-    for k in 0..count {
-        let mut word = [0; 4];
-        word[..width].copy_from_slice(&bytes[k * stride..k * stride + width]);
-        indices.push(base.saturating_add(u32::from_le_bytes(word)));
-    }
-    Ok(())
+    elements(root, binary, index, width)
 }

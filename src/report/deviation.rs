@@ -1,7 +1,7 @@
 //! The deviation of written triangles, measured by dense sampling.
 
 use glam::DVec3;
-use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
 use crate::geometry::mesh::Anchor;
 use crate::gltf::{Geometry, WrittenGeometry};
@@ -31,7 +31,7 @@ const SAMPLES: [[f64; 3]; 13] = [
 /// a sheet that lies near by does not hide a gap.
 #[must_use]
 pub fn measure_deviation(
-    geometry: &Geometry,
+    geometry: &Geometry<'_>,
     known: &WrittenGeometry,
     model: &Model,
     handle: ShapeHandle,
@@ -40,23 +40,20 @@ pub fn measure_deviation(
     if !sources.curved() || known.anchors.len() != geometry.positions.len() {
         return 0.0;
     }
-    let triangles: Vec<&[u32]> = geometry.indices.chunks_exact(3).collect();
     // The greatest of a set is the same in any order, so threads do not matter.
-    triangles
-        .par_iter()
+    (0..geometry.indices.len() / 3)
+        .into_par_iter()
         .with_min_len(256)
         .map(|triangle| of_triangle(triangle, geometry, &known.anchors, &sources))
         .reduce(|| 0.0, f64::max)
 }
 
-fn of_triangle(triangle: &[u32], geometry: &Geometry, anchors: &[Anchor], sources: &Sources) -> f64 {
-    let corners = [0, 1, 2].map(|corner| anchors[triangle[corner] as usize]);
+fn of_triangle(triangle: usize, geometry: &Geometry<'_>, anchors: &[Anchor], sources: &Sources) -> f64 {
+    let vertices = [0, 1, 2].map(|corner| geometry.indices.at(3 * triangle + corner) as usize);
+    let corners = vertices.map(|vertex| anchors[vertex]);
     let Some(source) = sources.get(corners[0].source) else { return 0.0 };
     let window = Window { u: corners.map(|anchor| anchor.u), v: corners.map(|anchor| anchor.v) };
-    let places = [0, 1, 2].map(|corner| {
-        let [x, y, z] = geometry.positions[triangle[corner] as usize].map(f64::from);
-        DVec3::new(x, y, z)
-    });
+    let places = vertices.map(|vertex| DVec3::from_array(geometry.position(vertex).map(f64::from)));
     let at = |weights: &[f64; 3]| places[0] * weights[0] + places[1] * weights[1] + places[2] * weights[2];
     SAMPLES.iter().map(|weights| source.distance(at(weights), &window)).fold(0.0, f64::max)
 }

@@ -6,14 +6,16 @@
 mod cache;
 mod merge;
 mod moments;
+mod source;
 
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::geometry::mesh::topology;
+use crate::geometry::mesh::topology::{self, Topology};
 use moments::Moments;
 
 pub use cache::{FIFO_SIZE, VertexCache, vertex_cache};
+pub use source::{Corner, Position};
 
 /// What [`measure`] finds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -116,25 +118,29 @@ pub enum FactsError {
 /// A volume below this part of what a ball of the same area holds is none: the mesh is a sheet with two sides.
 const THIN: f64 = 1e-9;
 
-/// Measures a mesh: all its primitives together. Linear in time; the memory on top of the input is at most three times
-/// the input.
+/// Triangles below which one thread measures everything: to wake another takes longer.
+const ONE_THREAD: usize = 100_000;
+
+/// Measures a mesh: all its primitives together. Linear in time; the memory on top of the input is at most twice the
+/// input for oriented surfaces, three times for other meshes.
 ///
 /// # Errors
 /// See [`FactsError`]; every index and position is checked.
-pub fn measure(positions: &[[f32; 3]], indices: &[u32]) -> Result<MeshFacts, FactsError> {
+pub fn measure<P: Position, I: Corner>(positions: &[P], indices: &[I]) -> Result<MeshFacts, FactsError> {
     check(positions, indices)?;
     let bounds = bounds_of(positions);
-    let triangles = indices.len() / 3;
-    let same = merge::merge(positions);
-    let (topology, (moments, cache)) = rayon::join(
-        || topology::measure(triangles, positions.len(), |corner| same[indices[corner] as usize]),
-        || (Moments::of(positions, indices, bounds.as_ref()), vertex_cache(indices, positions.len())),
-    );
+    let shape = || topology_of(positions, indices);
+    let sums = || (Moments::of(positions, indices, bounds.as_ref()), vertex_cache(indices, positions.len()));
+    let (topology, (mut moments, cache)) =
+        if indices.len() / 3 < ONE_THREAD { (shape(), sums()) } else { rayon::join(shape, sums) };
     let topology = topology?;
     let solid = topology.closed && moments.volume().abs() > THIN * moments.area() * moments.area().sqrt();
     let mass = if solid { Mass::Solid } else { Mass::Surface };
+    if mass == Mass::Surface {
+        moments.add_surface(positions, indices);
+    }
     Ok(MeshFacts {
-        triangles: triangles as u64,
+        triangles: topology.triangles,
         vertices: positions.len() as u64,
         points: topology.points,
         bounds,
@@ -158,26 +164,36 @@ pub fn measure(positions: &[[f32; 3]], indices: &[u32]) -> Result<MeshFacts, Fac
     })
 }
 
-fn check(positions: &[[f32; 3]], indices: &[u32]) -> Result<(), FactsError> {
+fn topology_of<P: Position, I: Corner>(
+    positions: &[P],
+    indices: &[I],
+) -> Result<Topology, topology::TooLarge> {
+    let same = merge::merge(positions);
+    topology::measure(indices.len() / 3, positions.len(), |corner| same[indices[corner].vertex() as usize])
+}
+
+fn check<P: Position, I: Corner>(positions: &[P], indices: &[I]) -> Result<(), FactsError> {
     if !indices.len().is_multiple_of(3) {
         return Err(FactsError::IncompleteTriangle { indices: indices.len() });
     }
     let vertices = positions.len();
-    if indices.iter().max().is_some_and(|&most| most as usize >= vertices) {
-        let at = indices.iter().position(|&index| index as usize >= vertices).unwrap_or(0);
-        return Err(FactsError::IndexOutOfRange { triangle: at / 3, index: indices[at], vertices });
+    let beyond = |index: &I| index.vertex() as usize >= vertices;
+    if indices.iter().map(|index| index.vertex()).max().is_some_and(|most| most as usize >= vertices) {
+        let at = indices.iter().position(beyond).unwrap_or(0);
+        return Err(FactsError::IndexOutOfRange { triangle: at / 3, index: indices[at].vertex(), vertices });
     }
-    match positions.iter().position(|position| !position.iter().all(|value| value.is_finite())) {
+    let finite = |position: &P| position.coordinates().iter().all(|value| value.is_finite());
+    match positions.iter().position(|position| !finite(position)) {
         Some(vertex) => Err(FactsError::NotFinite { vertex }),
         None => Ok(()),
     }
 }
 
-fn bounds_of(positions: &[[f32; 3]]) -> Option<Box3> {
-    let first = *positions.first()?;
+fn bounds_of<P: Position>(positions: &[P]) -> Option<Box3> {
+    let first = positions.first()?.coordinates();
     let mut bounds = Box3 { min: first, max: first };
     for position in positions {
-        for (axis, &value) in position.iter().enumerate() {
+        for (axis, value) in position.coordinates().into_iter().enumerate() {
             bounds.min[axis] = bounds.min[axis].min(value);
             bounds.max[axis] = bounds.max[axis].max(value);
         }

@@ -18,7 +18,7 @@ use serde::Serialize;
 use crate::geometry::mesh::polygon_facts::PolygonFacts;
 use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::Evidence;
-use crate::gltf::{Read, ReadError, Written, WrittenGeometry, read};
+use crate::gltf::{Geometry, Indices, Read, ReadError, Written, WrittenGeometry, read};
 use crate::model::{Model, ShapeHandle};
 use facts::{FactsError, MeshFacts};
 use thiserror::Error;
@@ -214,13 +214,13 @@ pub fn measure(
 }
 
 fn shape_facts(
-    file: &Read,
+    file: &Read<'_>,
     known: &WrittenGeometry,
     (model, handle): (&Model, ShapeHandle),
     measured: Option<f64>,
 ) -> Result<ShapeFacts, ReportError> {
     let geometry = &file.geometries[known.mesh];
-    let facts = facts::measure(&geometry.positions, &geometry.indices)?;
+    let facts = mesh_facts(geometry)?;
     Ok(ShapeFacts {
         primitives: geometry.parts.len(),
         deviation: DeviationFacts {
@@ -238,12 +238,23 @@ fn shape_facts(
     })
 }
 
+/// Measures one mesh of a file, where it stands.
+///
+/// # Errors
+/// See [`FactsError`].
+pub fn mesh_facts(geometry: &Geometry<'_>) -> Result<MeshFacts, FactsError> {
+    match &geometry.indices {
+        Indices::Short(indices) => facts::measure(&geometry.positions, indices),
+        Indices::Long(indices) => facts::measure(&geometry.positions, indices),
+    }
+}
+
 fn extent(facts: &MeshFacts) -> Bounds {
     let point = |corner: [f32; 3]| glam::Vec3::from_array(corner).as_dvec3();
     facts.bounds.map_or(Bounds::EMPTY, |bounds| Bounds { min: point(bounds.min), max: point(bounds.max) })
 }
 
-fn nodes(file: &Read) -> Vec<NodeFacts> {
+fn nodes(file: &Read<'_>) -> Vec<NodeFacts> {
     let all = &file.root.nodes;
     let mut parents = vec![None; all.len()];
     for (index, node) in all.iter().enumerate() {
@@ -281,7 +292,7 @@ fn local(node: &gltf::json::Node) -> glam::DMat4 {
 }
 
 fn totals(
-    file: &Read,
+    file: &Read<'_>,
     shapes: &IndexMap<String, ShapeFacts>,
     written: &Written,
     nodes: &[NodeFacts],
@@ -309,8 +320,8 @@ fn totals(
         let known = written.geometries.iter().find(|known| known.mesh == mesh.value());
         bounds = match known.and_then(|known| shapes.get(&known.name)).filter(|_| plain) {
             Some(facts) => bounds.union(extent(&facts.facts)),
-            None => geometry.positions.iter().fold(bounds, |bounds, position| {
-                let place = glam::Vec3::from_array(*position).as_dvec3();
+            None => (0..geometry.positions.len()).fold(bounds, |bounds, vertex| {
+                let place = glam::Vec3::from_array(geometry.position(vertex)).as_dvec3();
                 bounds.with_point(matrix.transform_point3(place))
             }),
         };

@@ -1,9 +1,12 @@
 //! Topology of an index buffer: closed, manifold, components, Euler number, genus, boundary.
 //!
 //! Exact: no coordinate is read. Callers merge equal positions first; vertices that stand on one position are one
-//! *point* here. A *corner* is a place in the index buffer, and names the edge that leaves it: corner `3t` of
-//! triangle (a, b, c) is the edge a-b. Edges of one pair of points are paired by bucketing all corners under the
-//! lower of their two points and sorting each bucket by the higher, so nothing is hashed.
+//! *point* here. Most meshes are oriented surfaces, and a quick proof of that ([`surface`]) comes first; the general
+//! way follows where it fails. A *corner* is a place in the index buffer, and names the edge that leaves it: corner
+//! `3t` of triangle (a, b, c) is the edge a-b. Edges of one pair of points are paired by bucketing all corners under
+//! the lower of their two points and sorting each bucket by the higher, so nothing is hashed.
+
+mod surface;
 
 use serde::Serialize;
 
@@ -69,15 +72,10 @@ pub fn measure(
     if triangles > i32::MAX as usize / 3 {
         return Err(TooLarge { triangles });
     }
-    let mut topology = Topology { triangles: triangles as u64, ..Topology::default() };
-    let mut joined = Joined::new(triangles);
-    let pairing = pair(&mut topology, &mut joined, points, (triangles, &point_of));
-    topology.components = joined.sets();
-    drop(joined);
-    count_fans(&mut topology, &pairing);
-    count_boundary_loops(&mut topology, &pairing);
-    let paired = topology.boundary_edges + topology.crowded_edges + topology.misoriented_edges == 0;
-    topology.manifold = topology.closed && paired && pairing.self_edges == 0 && topology.extra_fans == 0;
+    let mut topology = match surface::of_surface(triangles, points, &point_of) {
+        Some(topology) => topology,
+        None => of_any(triangles, points, &point_of),
+    };
     topology.euler = signed(topology.points) - signed(topology.edges) + signed(topology.triangles);
     topology.genus = if topology.manifold {
         u64::try_from(signed(topology.components) - topology.euler / 2).ok()
@@ -85,6 +83,20 @@ pub fn measure(
         None
     };
     Ok(topology)
+}
+
+/// Measures any triangles, but for the Euler number and the genus.
+fn of_any(triangles: usize, points: usize, point_of: &impl Fn(usize) -> u32) -> Topology {
+    let mut topology = Topology { triangles: triangles as u64, ..Topology::default() };
+    let mut joined = Joined::new(triangles);
+    let pairing = pair(&mut topology, &mut joined, points, (triangles, point_of));
+    topology.components = joined.sets();
+    drop(joined);
+    count_fans(&mut topology, &pairing);
+    count_boundary_loops(&mut topology, &pairing);
+    let paired = topology.boundary_edges + topology.crowded_edges + topology.misoriented_edges == 0;
+    topology.manifold = topology.closed && paired && pairing.self_edges == 0 && topology.extra_fans == 0;
+    topology
 }
 
 /// Measures an index buffer.

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::Corner;
+
 /// Vertices in the simulated cache: first in, first out, as in meshoptimizer's README.
 pub const FIFO_SIZE: u32 = 16;
 
@@ -17,15 +19,15 @@ pub struct VertexCache {
 /// Simulates the cache over an index buffer. Indices out of range of `vertices` count as misses. Linear.
 #[must_use]
 #[expect(clippy::cast_precision_loss, reason = "ratios of counts below 2^53")]
-pub fn vertex_cache(indices: &[u32], vertices: usize) -> VertexCache {
+pub fn vertex_cache<I: Corner>(indices: &[I], vertices: usize) -> VertexCache {
     // The number of misses at which each vertex entered the cache, counted from FIFO_SIZE + 1; 0 for never. Counts
     // that wrap around would need 2^32 misses.
     let mut entered = vec![0_u32; vertices];
     let mut misses = 0_u64;
     let mut clock = FIFO_SIZE + 1;
     let mut used = 0_u64;
-    for &index in indices {
-        let Some(entry) = entered.get_mut(index as usize) else {
+    for index in indices {
+        let Some(entry) = entered.get_mut(index.vertex() as usize) else {
             misses += 1;
             continue;
         };

@@ -1,5 +1,7 @@
 //! Finds vertices at equal positions.
 
+use super::Position;
+
 /// Average probes for each vertex after which the table gives up: positions chosen to collide, which no real mesh has.
 const PROBE_LIMIT: usize = 16;
 
@@ -9,16 +11,19 @@ const EMPTY: u32 = u32::MAX;
 /// For each vertex the first vertex with the same position (-0 is 0). Linear; the table takes 6 to 12 bytes a vertex.
 ///
 /// The result does not depend on the hash.
-pub(super) fn merge(positions: &[[f32; 3]]) -> Vec<u32> {
+pub(super) fn merge<P: Position>(positions: &[P]) -> Vec<u32> {
     by_table(positions).unwrap_or_else(|| by_sorting(positions))
 }
 
 /// Bits of a position; equal positions have equal bits.
-fn bits(position: [f32; 3]) -> [u32; 3] {
-    position.map(|value| (value + 0.0).to_bits())
+#[inline]
+fn bits<P: Position>(position: P) -> [u32; 3] {
+    let [x, y, z] = position.coordinates();
+    [(x + 0.0).to_bits(), (y + 0.0).to_bits(), (z + 0.0).to_bits()]
 }
 
 /// Folds 96 bits into 64 that depend on all of them.
+#[inline]
 fn hash([x, y, z]: [u32; 3]) -> u64 {
     let low = u64::from(x) << 32 | u64::from(y);
     let mixed = (low ^ 0x9e37_79b9_7f4a_7c15).wrapping_mul(0xd6e8_feb8_6659_fd93) ^ u64::from(z);
@@ -27,7 +32,7 @@ fn hash([x, y, z]: [u32; 3]) -> u64 {
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "the mask leaves less than a usize")]
-fn by_table(positions: &[[f32; 3]]) -> Option<Vec<u32>> {
+fn by_table<P: Position>(positions: &[P]) -> Option<Vec<u32>> {
     let capacity = (positions.len() + positions.len() / 2 + 1).next_power_of_two();
     let mask = capacity as u64 - 1;
     let mut table = vec![EMPTY; capacity];
@@ -54,7 +59,7 @@ fn by_table(positions: &[[f32; 3]]) -> Option<Vec<u32>> {
     Some(same)
 }
 
-fn by_sorting(positions: &[[f32; 3]]) -> Vec<u32> {
+fn by_sorting<P: Position>(positions: &[P]) -> Vec<u32> {
     let mut order: Vec<u32> = (0_u32..).zip(positions).map(|(vertex, _)| vertex).collect();
     let key = |&vertex: &u32| (bits(positions[vertex as usize]), vertex);
     order.sort_unstable_by_key(key);

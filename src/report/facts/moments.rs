@@ -9,7 +9,7 @@ use glam::DVec3;
 use rayon::iter::{IndexedParallelIterator, ParallelIterator};
 use rayon::slice::ParallelSlice;
 
-use super::{Box3, Mass};
+use super::{Box3, Corner, Mass, ONE_THREAD, Position};
 
 /// Triangles summed one after another; blocks are added pairwise.
 const BLOCK: usize = 1024;
@@ -23,58 +23,116 @@ pub(super) struct Moments {
     center: DVec3,
     /// Over the inside, times 6, 24 and 120.
     solid: Integrals,
-    /// Over the surface, times 2, 6 and 24.
+    /// Over the surface, times 2, 6 and 24; only the first unless [`add_surface`](Self::add_surface) is called.
     surface: Integrals,
     /// Triangles of no area.
     pub(super) degenerate: u64,
 }
 
+/// Sums that blocks add up to.
+trait Sum: Copy + Default + Send {
+    fn add(&mut self, corners: [DVec3; 3]);
+    fn plus(self, other: Self) -> Self;
+}
+
+/// What every mesh needs.
+#[derive(Clone, Copy, Default)]
+struct Inside {
+    integrals: Integrals,
+    double_area: f64,
+    degenerate: u64,
+}
+
+impl Sum for Inside {
+    #[inline]
+    fn add(&mut self, [a, b, c]: [DVec3; 3]) {
+        let normal = (b - a).cross(c - a);
+        self.double_area += normal.length();
+        self.degenerate += u64::from(normal == DVec3::ZERO);
+        add_scaled(&mut self.integrals, a.dot(normal), [a, b, c]);
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            integrals: sum(self.integrals, other.integrals),
+            double_area: self.double_area + other.double_area,
+            degenerate: self.degenerate + other.degenerate,
+        }
+    }
+}
+
+/// What meshes without an inside need.
+#[derive(Clone, Copy, Default)]
+struct Surface(Integrals);
+
+impl Sum for Surface {
+    #[inline]
+    fn add(&mut self, [a, b, c]: [DVec3; 3]) {
+        add_scaled(&mut self.0, (b - a).cross(c - a).length(), [a, b, c]);
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self(sum(self.0, other.0))
+    }
+}
+
+#[inline]
+fn add_scaled(integrals: &mut Integrals, factor: f64, [a, b, c]: [DVec3; 3]) {
+    let s = a + b + c;
+    let squares = a * a + b * b + c * c + s * s;
+    let mixed = turned(a) + turned(b) + turned(c) + turned(s);
+    let shape = [1.0, s.x, s.y, s.z, squares.x, squares.y, squares.z, mixed.x, mixed.y, mixed.z];
+    for (integral, value) in integrals.iter_mut().zip(shape) {
+        *integral += factor * value;
+    }
+}
+
+fn sum(mut one: Integrals, other: Integrals) -> Integrals {
+    one.iter_mut().zip(other).for_each(|(one, other)| *one += other);
+    one
+}
+
+/// Sums over all triangles, block by block; indices must be in range.
+fn summed<S: Sum, P: Position, I: Corner>(positions: &[P], indices: &[I], center: DVec3) -> S {
+    let arm = |corner: &I| {
+        let position = positions[corner.vertex() as usize].coordinates();
+        DVec3::from_array(position.map(f64::from)) - center
+    };
+    let block = |block: &[I]| {
+        let mut sum = S::default();
+        for [a, b, c] in block.as_chunks().0 {
+            sum.add([arm(a), arm(b), arm(c)]);
+        }
+        sum
+    };
+    let mut blocks: Vec<S> = if indices.len() < 3 * ONE_THREAD {
+        indices.chunks(3 * BLOCK).map(block).collect()
+    } else {
+        indices.par_chunks(3 * BLOCK).with_min_len(8).map(block).collect()
+    };
+    while blocks.len() > 1 {
+        blocks =
+            blocks.chunks(2).map(|pair| pair.iter().copied().reduce(S::plus).unwrap_or_default()).collect();
+    }
+    blocks.pop().unwrap_or_default()
+}
+
 impl Moments {
     /// Sums over all triangles; indices must be in range.
-    pub(super) fn of(positions: &[[f32; 3]], indices: &[u32], bounds: Option<&Box3>) -> Self {
+    pub(super) fn of<P: Position, I: Corner>(positions: &[P], indices: &[I], bounds: Option<&Box3>) -> Self {
         let Some(bounds) = bounds else { return Self::default() };
         let vector = |position: [f32; 3]| DVec3::from_array(position.map(f64::from));
         let center = (vector(bounds.min) + vector(bounds.max)) * 0.5;
-        let block = |block: &[u32]| {
-            let mut sum = Self::default();
-            for corners in block.chunks_exact(3) {
-                let arm = |corner: usize| vector(positions[corners[corner] as usize]) - center;
-                sum.add_triangle(arm(0), arm(1), arm(2));
-            }
-            sum
-        };
-        let mut blocks: Vec<Self> = indices.par_chunks(3 * BLOCK).with_min_len(8).map(block).collect();
-        while blocks.len() > 1 {
-            blocks = blocks
-                .chunks(2)
-                .map(|pair| pair.iter().copied().reduce(Self::plus).unwrap_or_default())
-                .collect();
-        }
-        Self { center, ..blocks.pop().unwrap_or_default() }
+        let Inside { integrals, double_area, degenerate } = summed(positions, indices, center);
+        let mut surface = Integrals::default();
+        surface[0] = double_area;
+        Self { center, solid: integrals, surface, degenerate }
     }
 
-    fn add_triangle(&mut self, a: DVec3, b: DVec3, c: DVec3) {
-        let normal = (b - a).cross(c - a);
-        let double_area = normal.length();
-        let determinant = a.dot(normal);
-        self.degenerate += u64::from(normal == DVec3::ZERO);
-        let s = a + b + c;
-        let squares = a * a + b * b + c * c + s * s;
-        let mixed = turned(a) + turned(b) + turned(c) + turned(s);
-        let shape = [1.0, s.x, s.y, s.z, squares.x, squares.y, squares.z, mixed.x, mixed.y, mixed.z];
-        for (place, value) in shape.into_iter().enumerate() {
-            self.solid[place] += determinant * value;
-            self.surface[place] += double_area * value;
-        }
-    }
-
-    fn plus(mut self, other: Self) -> Self {
-        for place in 0..self.solid.len() {
-            self.solid[place] += other.solid[place];
-            self.surface[place] += other.surface[place];
-        }
-        self.degenerate += other.degenerate;
-        self
+    /// Sums the moments of the surface too.
+    pub(super) fn add_surface<P: Position, I: Corner>(&mut self, positions: &[P], indices: &[I]) {
+        let Surface(integrals) = summed(positions, indices, self.center);
+        self.surface = integrals;
     }
 
     /// Cubic metres inside.

@@ -170,7 +170,7 @@ fn damage_is_named() {
     let mut spoiled = cube;
     spoiled[5][1] = f32::NAN;
     assert_eq!(measure(&spoiled, &[0, 1, 2]), Err(FactsError::NotFinite { vertex: 5 }));
-    let nothing = measure(&[], &[]).expect("an empty mesh");
+    let nothing = measure::<[f32; 3], u32>(&[], &[]).expect("an empty mesh");
     assert!(nothing.bounds.is_none() && nothing.centroid.is_none() && nothing.acmr == 0.0);
 }
 

@@ -1,6 +1,7 @@
 //! Known surfaces, and every orientation of a small one.
 
-use super::{Topology, of_triangles};
+use super::surface::of_surface;
+use super::{Topology, of_any, of_triangles};
 
 fn measure(triangles: &[[u32; 3]]) -> Topology {
     let points = triangles.iter().flatten().max().map_or(0, |&point| point as usize + 1);
@@ -180,4 +181,51 @@ fn a_wheel_of_any_size_is_one_fan() {
         assert_eq!((found.boundary_edges, found.boundary_loops, found.extra_fans), (u64::from(spokes), 1, 0));
         assert_eq!(found.euler, 1);
     }
+}
+
+/// The quick way says what the general way says, and speaks whenever it should: on every surface whose points have
+/// one fan each and whose edges are used once in a direction.
+#[test]
+fn the_quick_way_agrees_with_the_general_way() {
+    let mut state = 3_u64;
+    let mut random = |below: u32| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        u32::try_from(state >> 33).expect("31 bits") % below
+    };
+    let (mut quick, mut general) = (0, 0);
+    for round in 0..4000 {
+        let mut triangles = torus(3 + random(5), 3 + random(5));
+        if random(2) == 0 {
+            triangles.extend(shifted(&TETRAHEDRON, random(70)));
+        }
+        let damage = if round % 4 == 0 { 0 } else { random(6) };
+        for _ in 0..damage {
+            let victim = random(u32::try_from(triangles.len()).expect("few")) as usize;
+            match random(9) {
+                0 => triangles[victim].swap(0, 1),
+                1 => triangles[victim][0] = random(64),
+                2 => triangles.push(triangles[victim]),
+                _ => drop(triangles.swap_remove(victim)),
+            }
+        }
+        if random(2) == 0 {
+            let third = triangles.len() / 3;
+            triangles.rotate_left(third);
+        }
+        let point_of = |corner: usize| triangles[corner / 3][corner % 3];
+        let expected = of_any(triangles.len(), 140, &point_of);
+        let flat = triangles.iter().any(|[a, b, c]| a == b || b == c || c == a);
+        let odd = expected.crowded_edges + expected.misoriented_edges + expected.extra_fans > 0 || flat;
+        match of_surface(triangles.len(), 140, &point_of) {
+            Some(found) => {
+                quick += 1;
+                assert_eq!(found, expected, "{triangles:?}");
+            }
+            None => {
+                general += 1;
+                assert!(odd, "{triangles:?}");
+            }
+        }
+    }
+    assert!(quick > 1000 && general > 1000, "{quick} and {general}");
 }
