@@ -8,6 +8,7 @@ mod document;
 mod glb;
 mod hostile;
 mod mutation;
+mod primitives;
 mod refusals;
 mod shading;
 mod shapes;

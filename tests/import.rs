@@ -19,7 +19,7 @@ use serde_json::Value;
 
 /// The folder of cases, or a line that says how many are not run.
 #[expect(clippy::print_stdout, reason = "a test that does not run must say so")]
-fn cases(count: usize, what: &str) -> Option<PathBuf> {
+pub(crate) fn cases(count: usize, what: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("KILN_CASES").map(PathBuf::from);
     if folder.is_none() {
         println!("KILN_CASES is not set: {count} {what} not tried");
@@ -38,7 +38,7 @@ fn bytes_of(path: &Path) -> Vec<u8> {
     bytes
 }
 
-fn json_of(path: &Path) -> Value {
+pub(crate) fn json_of(path: &Path) -> Value {
     serde_json::from_slice(&bytes_of(path)).expect("JSON")
 }
 

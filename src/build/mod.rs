@@ -9,6 +9,7 @@ mod curve;
 mod import;
 mod material;
 mod node;
+mod primitive;
 mod profile;
 mod shape;
 

@@ -2,9 +2,10 @@
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
+use super::primitive::primitive;
 use super::profile::show;
 use super::{Builder, placement};
-use crate::geometry::curve::{AnyCurve, Curve as _, EllipseArc, Polyline, Side};
+use crate::geometry::curve::{AnyCurve, Curve as _, Side};
 use crate::geometry::mesh;
 use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::tessellate::{Extrusion, Revolution, Station, Sweep};
@@ -73,20 +74,17 @@ impl Builder<'_> {
     fn recipe(&mut self, name: &str, kind: &Kind, span: Span) -> Option<(Recipe, DVec3)> {
         let here = |recipe: Recipe| (recipe, DVec3::ZERO);
         match kind {
-            Kind::Box(cuboid) => {
-                Some(here(Recipe::Cuboid { size: cuboid.size.value, center: cuboid.center.value }))
-            }
-            Kind::Sphere(sphere) => {
-                let arc = EllipseArc::circle(DVec3::ZERO, sphere.radius.value, -90.0, 90.0);
-                Some((turned(AnyCurve::Ellipse(arc)), sphere.center.value))
-            }
-            Kind::Cylinder(cylinder) => {
-                let (radius, half) = (cylinder.radius.value, cylinder.height.value / 2.0);
-                let corners = [(0.0, -half), (radius, -half), (radius, half), (0.0, half)];
-                let corners = corners.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
-                let profile = Polyline::new(corners, false).map(AnyCurve::Polyline)?;
-                Some((turned(profile), cylinder.center.value))
-            }
+            Kind::Box(_)
+            | Kind::Sphere(_)
+            | Kind::Cylinder(_)
+            | Kind::Cone(_)
+            | Kind::Capsule(_)
+            | Kind::Torus(_)
+            | Kind::Tube(_)
+            | Kind::Disk(_)
+            | Kind::Plane(_)
+            | Kind::Polyhedron(_)
+            | Kind::Geodesic(_) => primitive(kind),
             Kind::Revolve(revolve) => {
                 let profile = self.axial_profile(&revolve.profile)?;
                 Some(here(Recipe::Revolution(Revolution {
@@ -247,10 +245,6 @@ impl Builder<'_> {
         }
         Some(Recipe::Polygons { mesh: polygons, materials: Vec::new() })
     }
-}
-
-fn turned(profile: AnyCurve) -> Recipe {
-    Recipe::Revolution(Revolution { profile, start: 0.0, angle: 360.0, caps: true })
 }
 
 /// The mirror image in a plane.

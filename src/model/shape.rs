@@ -4,7 +4,7 @@ use glam::{DAffine3, DVec2, DVec3};
 
 use super::MaterialHandle;
 use crate::geometry::mesh::PolygonMesh;
-use crate::geometry::tessellate::{Extrusion, Revolution, Sweep};
+use crate::geometry::tessellate::{Extrusion, FlatPlane, Geodesic, Revolution, RoundedBox, Sweep};
 
 /// Index of a shape in its model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -31,6 +31,12 @@ pub enum Recipe {
         /// Its middle.
         center: DVec3,
     },
+    /// A box with rounded edges.
+    RoundedBox(RoundedBox),
+    /// A ball of nearly equal triangles.
+    Geodesic(Geodesic),
+    /// A flat rectangle.
+    Plane(FlatPlane),
     /// A profile turned about the y axis; spheres and cylinders too.
     Revolution(Revolution),
     /// Outlines pushed along z.

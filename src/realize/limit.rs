@@ -76,6 +76,7 @@ pub(super) fn least_triangles(model: &Model) -> Vec<u64> {
                 parts.iter().fold(0, |sum: u64, (part, _)| sum.saturating_add(all[part.0 as usize]))
             }
             Recipe::Cuboid { .. } => 12,
+            Recipe::RoundedBox(_) => 44,
             _ => 1,
         });
     }

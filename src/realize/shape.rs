@@ -10,7 +10,8 @@ use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
 use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex};
 use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::{
-    Detail, Deviation, SurfaceDensity, TessellateError, Tessellation, cuboid, extrude, revolve, sweep,
+    Detail, Deviation, SurfaceDensity, TessellateError, Tessellation, cuboid, extrude, geodesic, plane,
+    revolve, rounded_box, sweep,
 };
 use crate::model::{Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing, UvMode};
 
@@ -135,11 +136,14 @@ impl<'a> Maker<'a> {
             materials: vec![None],
             deviation: made.deviation,
             // In the space before the placement, which scales it back with the rest.
-            tolerance: shape.options.density.is_none().then_some(tolerance / stretch),
+            tolerance: (!has_fixed_grid(shape)).then_some(tolerance / stretch),
             notes: Vec::new(),
         };
         let made = match &shape.recipe {
             Recipe::Cuboid { size, center } => Ok(cuboid(*size, *center, uv)),
+            Recipe::RoundedBox(shape) => rounded_box(shape, &detail),
+            Recipe::Geodesic(ball) => geodesic(ball, &detail),
+            Recipe::Plane(flat) => plane(flat, &detail),
             Recipe::Revolution(revolution) => revolve(revolution, &detail),
             Recipe::Extrusion(extrusion) => extrude(extrusion, &detail),
             Recipe::Sweep(path) => sweep(path, &detail),
@@ -156,9 +160,12 @@ impl<'a> Maker<'a> {
     }
 
     fn finished(&self, shape: &Shape, made: Made) -> Result<Made, RealizeError> {
-        // Boxes and polygons have one normal a face already.
-        let curved = matches!(shape.recipe, Recipe::Revolution(_) | Recipe::Extrusion(_) | Recipe::Sweep(_));
-        let flat = curved && shape.options.smoothing == Smoothing::Flat;
+        // Boxes, planes and polygons have one normal a face already.
+        let faceted = matches!(
+            shape.recipe,
+            Recipe::Cuboid { .. } | Recipe::Plane(_) | Recipe::Polygons { .. } | Recipe::Assembly(_)
+        );
+        let flat = !faceted && shape.options.smoothing == Smoothing::Flat;
         let made = if flat { flatten(made) } else { made };
         Cost::of(&made.mesh).check(&self.model.limits)?;
         Ok(made)
@@ -242,6 +249,12 @@ impl<'a> Maker<'a> {
         }
         Ok(whole)
     }
+}
+
+/// Whether the document fixes how finely a shape is cut.
+fn has_fixed_grid(shape: &Shape) -> bool {
+    let divided = matches!(&shape.recipe, Recipe::Geodesic(ball) if ball.frequency.is_some());
+    shape.options.density.is_some() || divided
 }
 
 fn join(whole: &mut Made, part: &Made) {

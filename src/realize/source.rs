@@ -7,7 +7,7 @@ use crate::geometry::curve::{AnyCurve, Curve as _, Side, nearest_within};
 use crate::geometry::mesh;
 use crate::geometry::number::{Bounds, hypot};
 use crate::geometry::surface::{Surface as _, SweptSurface};
-use crate::geometry::tessellate::{Density, discretize};
+use crate::geometry::tessellate::{Density, RoundedBox, discretize};
 use crate::model::{Model, Recipe, ShapeHandle};
 
 /// How many surfaces the anchors of a recipe tell apart.
@@ -16,7 +16,7 @@ pub(super) fn source_count(recipe: &Recipe) -> u32 {
         Recipe::Cuboid { .. } => 6,
         Recipe::Revolution(_) | Recipe::Sweep(_) => 3,
         Recipe::Extrusion(extrusion) => mesh::index(extrusion.outlines.len()) + 2,
-        Recipe::Polygons { .. } => 1,
+        Recipe::Polygons { .. } | Recipe::RoundedBox(_) | Recipe::Geodesic(_) | Recipe::Plane(_) => 1,
         Recipe::Assembly(_) => 0,
     }
 }
@@ -33,6 +33,8 @@ pub struct Source {
 enum Kind {
     /// Triangles are the shape, or a flat face whose outline is measured elsewhere.
     Exact,
+    /// A ball too: a box without sides.
+    Rounded(RoundedBox),
     Revolved(AnyCurve),
     Extruded(AnyCurve),
     Swept(Box<SweptSurface>),
@@ -70,7 +72,11 @@ fn collect(model: &Model, handle: ShapeHandle, outer: &DAffine3, all: &mut Vec<S
     let mut push = |kind: Kind| all.push(Source { kind, map, back: map.inverse() });
     match &shape.recipe {
         Recipe::Cuboid { .. } => (0..6).for_each(|_| push(Kind::Exact)),
-        Recipe::Polygons { .. } => push(Kind::Exact),
+        Recipe::Polygons { .. } | Recipe::Plane(_) => push(Kind::Exact),
+        Recipe::RoundedBox(shape) => push(Kind::Rounded(*shape)),
+        Recipe::Geodesic(ball) => {
+            push(Kind::Rounded(RoundedBox { size: DVec3::splat(2.0 * ball.radius), radius: ball.radius }));
+        }
         Recipe::Revolution(revolution) => {
             push(Kind::Revolved(revolution.profile.clone()));
             push(Kind::Exact);
@@ -163,6 +169,7 @@ impl Source {
         let local = self.back.transform_point3(point);
         let away = match &self.kind {
             Kind::Exact => return 0.0,
+            Kind::Rounded(shape) => shape.distance(local),
             Kind::Revolved(profile) => {
                 let radius = hypot(local.x, local.z);
                 let flat = DVec3::new(radius, local.y, 0.0);
@@ -293,6 +300,12 @@ fn mapped(bounds: &Bounds, map: &DAffine3) -> Bounds {
 pub(super) fn extent(recipe: &Recipe) -> Bounds {
     match recipe {
         Recipe::Cuboid { size, center } => Bounds { min: *center - *size / 2.0, max: *center + *size / 2.0 },
+        Recipe::RoundedBox(shape) => Bounds { min: -shape.size / 2.0, max: shape.size / 2.0 },
+        Recipe::Geodesic(ball) => Bounds { min: DVec3::splat(-ball.radius), max: DVec3::splat(ball.radius) },
+        Recipe::Plane(flat) => {
+            let half = DVec3::new(flat.size.x, 0.0, flat.size.y) / 2.0;
+            Bounds { min: -half, max: half }
+        }
         Recipe::Polygons { mesh, .. } => mesh.bounds(),
         Recipe::Revolution(revolution) => {
             let profile = along(&revolution.profile);

@@ -11,6 +11,7 @@
 
 pub mod convert;
 mod normals;
+pub mod platonic;
 pub mod polygon;
 pub mod polygon_facts;
 pub mod topology;

@@ -11,8 +11,12 @@ mod crossing;
 mod cuboid;
 mod discretize;
 mod extrude;
+mod geodesic;
+mod plane;
 mod revolve;
 mod ring;
+mod round;
+mod rounded;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -21,7 +25,10 @@ pub use crossing::{Contact, Crossing, encloses, first_contact, first_crossing};
 pub use cuboid::cuboid;
 pub use discretize::{Density, Station, arc_lengths, discretize};
 pub use extrude::{Extrusion, extrude};
+pub use geodesic::{Geodesic, geodesic};
+pub use plane::{FlatPlane, plane};
 pub use revolve::{Revolution, revolve};
+pub use rounded::{RoundedBox, rounded_box};
 pub use sweep::{Sweep, sweep};
 
 use thiserror::Error;

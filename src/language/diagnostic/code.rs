@@ -158,6 +158,9 @@ codes! {
     /// positions cannot be stored as exactly as the tolerance asks
     BeyondPrecision = "K0811";
 
+    /// a measure of a shape does not fit its other measures
+    DoesNotFit = "K0830";
+
     /// a file cannot be imported
     ImportFailed = "K0851";
     /// parts of an imported file are left out

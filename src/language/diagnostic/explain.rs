@@ -174,6 +174,8 @@ examples! {
     BeyondPrecision: "A glTF file holds positions in single precision: about seven digits. Far from the origin, or where the tolerance is very fine, rounding alone moves points by more than half the tolerance. Model near the origin and let a node carry the shape to its place, or write a coarser tolerance.",
         "tolerance = 0.001\n[shape.a.sphere]\nradius = 1\ncenter = [30000, 0, 0]" =>
         "tolerance = 0.001\n[shape.a.sphere]\nradius = 1\n[node.n]\nshape = \"a\"\nat = [30000, 0, 0]";
+    DoesNotFit: "Each measure of a shape is right by itself, but they do not go together: a rounding wider than its box, a hole wider than its tube.",
+        "[shape.a.box]\nsize = [4, 1, 4]\nradius = 0.6" => "[shape.a.box]\nsize = [4, 1, 4]\nradius = 0.4";
     ImportFailed: "A file is damaged or cut off. The message names its line and value. Export it again.",
         "" => "";
     ImportNote: "Something in an imported file was passed over or put right; the notes say what and where.",

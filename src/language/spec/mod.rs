@@ -18,6 +18,7 @@ mod node;
 mod page;
 mod path;
 mod point;
+mod primitive;
 mod profile;
 mod reader;
 mod reference;
@@ -45,9 +46,13 @@ pub use node::Node;
 pub use page::reference;
 pub use path::{ArcSegment, Joint, Path, Segment};
 pub use point::{Count, Point, Scale, Segments};
+pub use primitive::{
+    Base, BoxShape, Capsule, Cone, Cylinder, Disk, Geodesic, GeodesicClass, PlaneShape, Polyhedron, Pose,
+    Solid, Sphere, Torus, Tube,
+};
 pub use profile::{Extrude, Frame, Revolve, Sweep};
 pub use reference::{CurveReference, Family, MaterialName, NodeName, ShapeName, ShapeReference};
-pub use shape::{BoxShape, Cylinder, Shape, ShapeDefinition, ShapeOptions, Smoothing, Sphere, Uv};
+pub use shape::{Shape, ShapeDefinition, ShapeOptions, Smoothing, Uv};
 pub use spanned::Sp;
 pub use spline::{Bezier, NaturalSpline, Parameters};
 pub use whole::schema;

@@ -10,6 +10,9 @@ use crate::language::spec::import::Import;
 use crate::language::spec::kind::{Kinds, take_kind};
 use crate::language::spec::mesh::Mesh;
 use crate::language::spec::point::{Scale, Segments};
+use crate::language::spec::primitive::{
+    BoxShape, Capsule, Cone, Cylinder, Disk, Geodesic, PlaneShape, Polyhedron, Sphere, Torus, Tube,
+};
 use crate::language::spec::profile::{Extrude, Revolve, Sweep};
 use crate::language::spec::reader::{Fields, Read, Reader};
 use crate::language::spec::reference::MaterialName;
@@ -80,12 +83,28 @@ choices! {
 kinds! {
     /// A shape of one kind.
     "shape" Shape {
-        /// A box with flat sides.
+        /// A box, with flat sides or rounded edges.
         Box(BoxShape) = "box";
         /// A ball.
         Sphere(Sphere) = "sphere";
         /// A cylinder that stands along the y axis.
         Cylinder(Cylinder) = "cylinder";
+        /// A cone, whole or cut off.
+        Cone(Cone) = "cone";
+        /// A cylinder with round ends.
+        Capsule(Capsule) = "capsule";
+        /// A ring.
+        Torus(Torus) = "torus";
+        /// A pipe.
+        Tube(Tube) = "tube";
+        /// A flat disk, ring or slice.
+        Disk(Disk) = "disk";
+        /// A flat rectangle.
+        Plane(PlaneShape) = "plane";
+        /// One of the five Platonic solids.
+        Polyhedron(Polyhedron) = "polyhedron";
+        /// A ball of nearly equal triangles.
+        Geodesic(Geodesic) = "geodesic";
         /// A profile turned about the y axis.
         Revolve(Revolve) = "revolve";
         /// A flat profile drawn out along the z axis.
@@ -104,38 +123,6 @@ kinds! {
         Array(Array) = "array";
         /// Several shapes as one mesh; each keeps its material.
         Group(Group) = "group";
-    }
-}
-
-table! {
-    /// A box with flat sides.
-    "box" pub BoxShape {
-        /// Width along x, height along y and depth along z, in the document's unit.
-        size: Sp<DVec3> => Check::above(0.0);
-        /// The middle.
-        center: Sp<DVec3> = DVec3::ZERO;
-    }
-}
-
-table! {
-    /// A ball.
-    "sphere" pub Sphere {
-        /// Radius, in the document's unit.
-        radius: Sp<f64> => Check::above(0.0);
-        /// The middle.
-        center: Sp<DVec3> = DVec3::ZERO;
-    }
-}
-
-table! {
-    /// A cylinder that stands along the y axis, closed at both ends.
-    "cylinder" pub Cylinder {
-        /// Radius, in the document's unit.
-        radius: Sp<f64> => Check::above(0.0);
-        /// Height along y, in the document's unit.
-        height: Sp<f64> => Check::above(0.0);
-        /// The middle.
-        center: Sp<DVec3> = DVec3::ZERO;
     }
 }
 
