@@ -244,8 +244,7 @@ impl Wrap<'_> {
     fn triangle(&mut self, corners: [u32; 3]) -> [VertexIndex; 3] {
         let directions = corners.map(|corner| self.points[corner as usize]);
         let middle = longitude(directions.iter().sum());
-        let own =
-            directions.map(|direction| is_pole(direction).then_some(middle).unwrap_or(longitude(direction)));
+        let own = directions.map(|direction| if is_pole(direction) { middle } else { longitude(direction) });
         // The nearest turn to the middle, and never left of the texture.
         let near = own.map(|u| u + (middle - u).round());
         let shift = if near.iter().any(|u| *u < 0.0) { 1.0 } else { 0.0 };
