@@ -217,7 +217,7 @@ fn polyhedra_stand_on_what_they_are_told_to() {
         let baked =
             bake(&format!("[shape.a.polyhedron]\nsolid = \"cube\"\ninradius = 0.5\npose = \"{pose}\""));
         let bounds = baked.only().facts.bounds.expect("it has points");
-        assert!((bounds.min[1] - lowest).abs() < 1e-6, "{pose}: {bounds:?}");
+        assert!((f64::from(bounds.min[1]) - lowest).abs() < 1e-6, "{pose}: {bounds:?}");
     }
 }
 
