@@ -65,6 +65,19 @@ cubic.bezier = { points = [[0, 0], [1, 2, 1], [3, -1, 0], [4, 1, 1], [5, 3, 1], 
 smooth.bezier = { degree = 2, points = [[0, 0], [1, 1], [2, 0], [3, -1], [4, 0]] }
 high.bezier = { degree = 9, points = [[0, 0], [1, 3], [2, -3], [3, 4], [4, -1], [5, 0], [6, 1], [7, 1], [8, 0], [9, 2, 1]] }
 stopped.bezier = { points = [[0, 0], [0, 0], [3, 1], [4, 4]] }
+quartic.b-spline = { degree = 4, points = [[5, 10], [15, 25], [30, 30], [45, 5], [55, 5], [70, 40], [60, 60, 5], [35, 60], [20, 40]] }
+loose.b-spline = { points = [[0, 0], [1, 2], [3, 1, 1], [4, 0], [5, 2]], knots = "uniform" }
+uneven.b-spline = { points = [[0, 0], [1, 2], [3, 1, 1], [4, 0], [5, 2], [6, 0], [7, 1]], degree = 2, knots = [-1, -1, 0, 0.5, 2, 2, 3, 7, 7, 9] }
+tripled.b-spline = { points = [[0, 0], [1, 2], [3, 1], [3, 1], [3, 1], [5, 2], [6, 0]] }
+bloop.b-spline = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5], [0.7, 2.2], [-0.6, 1.4]], closed = true }
+bring.b-spline = { points = [[0, 0], [2, -0.5], [3, 1, 1]], closed = true, degree = 4, knots = [0, 0.5, 0.75, 3] }
+cusp.bezier = { points = [[0, 0], [1, 1], [0, 1], [1, 0]] }
+turning.bezier = { points = [[0, 0], [2, 4], [1, 2]], degree = 2 }
+four.nurbs = { points = [[1, 0], [0, 1], [-1, 0], [0, -1]], weights = [1, 0, 1, 0], degree = 2, closed = true, knots = [0, 1, 1, 2, 2] }
+nine.nurbs = { points = [[0, -1], [-1, -1], [-1, 0], [-1, 1], [0, 1], [1, 1], [1, 0], [1, -1], [0, -1]], degree = 2, knots = [0, 0, 0, 0.25, 0.25, 0.5, 0.5, 0.75, 0.75, 1, 1, 1], weights = [1, 0.707, 1, 0.707, 1, 0.707, 1, 0.707, 1] }
+heavy.nurbs = { points = [[0, 0], [1, 2], [3, 1, 1], [4, 0], [5, 2], [6, 1], [7, 3]], weights = [1, 10, 0.1, 3, 0, 2, 1] }
+conic.bezier = { points = [[1, 0], [1, 1, 0.5], [0, 1]], degree = 2, weights = [1, 0.3, 2] }
+rcusp.bezier = { points = [[0, 0], [1, 1], [0, 1], [1, 0]], weights = [1, 1, 1, 1] }
 mixed.path = { start = [0, 0], segments = [
   { line = [[1, 0], [2, 1], [2, 2]] }, { arc = { through = [1.5, 3], to = [1, 2.5] } },
   { natural-spline = [[0, 2], [-1, 1], [-1, 0.5]] }, { quadratic = [[-1, 0], [-0.5, 0]] },

@@ -13,7 +13,7 @@ use crate::language::spec::{
     Arc, ArcSegment, Bezier, Curve, CurveReference, Joint, NaturalSpline, Parameters, Point, Segment, Sp,
 };
 
-fn positions(points: &[Sp<Point>]) -> Vec<DVec3> {
+pub(super) fn positions(points: &[Sp<Point>]) -> Vec<DVec3> {
     points.iter().map(|point| point.position).collect()
 }
 
@@ -62,6 +62,8 @@ impl Builder<'_> {
             })),
             Curve::NaturalSpline(spline) => self.natural_spline(spline, span),
             Curve::Bezier(bezier) => self.bezier(bezier, span),
+            Curve::BSpline(spline) => self.b_spline(spline, span),
+            Curve::Nurbs(spline) => self.nurbs(spline, span),
             Curve::Path(path) => self.path(path),
             Curve::Reverse(reverse) => {
                 let curve = self.curve_of(&reverse.of)?;
@@ -124,12 +126,15 @@ impl Builder<'_> {
         }
     }
 
-    fn degenerate<T>(&mut self, message: &str, span: Span) -> Option<T> {
+    pub(super) fn degenerate<T>(&mut self, message: &str, span: Span) -> Option<T> {
         self.report(Diagnostic::error(Code::Degenerate, message).at(span, "no curve"));
         None
     }
 
     fn bezier(&mut self, bezier: &Bezier, span: Span) -> Option<AnyCurve> {
+        if let Some(weights) = &bezier.weights {
+            return self.rational_bezier(bezier, weights);
+        }
         match BezierSpline::new(bezier.degree.value as usize, positions(&bezier.points)) {
             Ok(curve) => Some(AnyCurve::Bezier(curve)),
             Err(error) => self.degenerate(&error.to_string(), span),

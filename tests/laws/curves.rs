@@ -259,7 +259,8 @@ fn the_ends_of_closed_curves_meet_and_those_of_open_ones_do_not() {
         assert_eq!(curve.is_closed(), gap <= 1e-12 * size, "{name}: {gap}");
         closed += usize::from(curve.is_closed());
     }
-    assert!(closed >= 3 * 6, "polygon, circle, ellipse, ring, rounded, leaning");
+    let named = "polygon, circle, ellipse, ring, rounded, leaning, bloop, bring, four, nine";
+    assert!(closed >= 3 * 10, "{named}: {closed}");
 }
 
 #[test]

@@ -1,8 +1,10 @@
 //! One type for every kind of curve.
 
+use glam::DVec3;
+
 use super::{
-    BezierSpline, Curve, Domain, EllipseArc, Helix, HyperbolaArc, Jet, Path, Polyline, Reversed, Side,
-    Transformed,
+    BezierSpline, Curve, Domain, EllipseArc, Helix, HyperbolaArc, Jet, Path, Polyline, RationalSpline,
+    Reversed, Side, Transformed,
 };
 
 /// A curve of any kind.
@@ -18,6 +20,8 @@ pub enum AnyCurve {
     Helix(Helix),
     /// Bezier pieces, interpolating splines among them.
     Bezier(BezierSpline),
+    /// Rational Bezier pieces: NURBS among them.
+    Rational(RationalSpline),
     /// Curves end to start.
     Path(Path),
     /// A curve under an affine map.
@@ -34,6 +38,7 @@ macro_rules! each_kind {
             AnyCurve::Hyperbola($curve) => $body,
             AnyCurve::Helix($curve) => $body,
             AnyCurve::Bezier($curve) => $body,
+            AnyCurve::Rational($curve) => $body,
             AnyCurve::Path($curve) => $body,
             AnyCurve::Transformed($curve) => $body,
             AnyCurve::Reversed($curve) => $body,
@@ -56,6 +61,18 @@ impl Curve for AnyCurve {
 
     fn joints(&self) -> Vec<f64> {
         each_kind!(self, curve => curve.joints())
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        each_kind!(self, curve => curve.breaks())
+    }
+
+    fn has_curvature(&self) -> bool {
+        each_kind!(self, curve => curve.has_curvature())
+    }
+
+    fn direction(&self, t: f64, side: Side) -> DVec3 {
+        each_kind!(self, curve => curve.direction(t, side))
     }
 
     fn chord_deviation(&self, from: f64, to: f64) -> f64 {

@@ -8,6 +8,8 @@
 use glam::DVec3;
 use thiserror::Error;
 
+use super::control::{self, hodograph, jet, stops, with_part};
+use super::pieces::{Pieces, direction_within, turns};
 use super::{Curve, Domain, Jet, Side};
 
 /// Why control points do not make a Bezier spline.
@@ -31,14 +33,14 @@ pub enum BezierError {
 
 /// Pieces of one degree, each sharing its end point with the next; piece k covers knots k to k + 1.
 ///
-/// Evaluation costs O(degree^2); finding the piece O(log pieces).
+/// Joints are the knots where the direction jumps, and the cusps inside pieces: where the derivative vanishes
+/// for an instant and the curve turns. Evaluation costs O(degree^2); finding the piece O(log pieces).
 #[derive(Clone, Debug, PartialEq)]
 pub struct BezierSpline {
     degree: usize,
     points: Vec<DVec3>,
-    knots: Vec<f64>,
+    pieces: Pieces,
     joints: Vec<f64>,
-    closed: bool,
 }
 
 impl BezierSpline {
@@ -64,11 +66,11 @@ impl BezierSpline {
         if count < degree + 1 || !(count - 1).is_multiple_of(degree) {
             return Err(BezierError::Count { points: count, degree });
         }
-        if knots.len() != (count - 1) / degree + 1 || knots.windows(2).any(|pair| pair[0] >= pair[1]) {
+        if knots.len() != (count - 1) / degree + 1 {
             return Err(BezierError::Knots);
         }
-        let closed = points[0] == points[count - 1];
-        let mut spline = Self { degree, points, knots, joints: Vec::new(), closed };
+        let pieces = Pieces::new(knots).ok_or(BezierError::Knots)?;
+        let mut spline = Self { degree, points, pieces, joints: Vec::new() };
         spline.joints = spline.find_joints();
         Ok(spline)
     }
@@ -85,150 +87,138 @@ impl BezierSpline {
         &self.points
     }
 
-    fn find_joints(&self) -> Vec<f64> {
-        // Directions that agree to this sine come from a smooth construction: rounding alone leaves about
-        // 1e-14, a corner a person means starts far above.
-        const SAME_DIRECTION: f64 = 1e-9;
-        let inner = &self.knots[1..self.knots.len() - 1];
-        let jumps = |t: &f64| {
-            let before = self.direction(*t, Side::Before);
-            let after = self.direction(*t, Side::After);
-            before.cross(after).length() > SAME_DIRECTION || before.dot(after) < 0.0
-        };
-        inner.iter().copied().filter(jumps).collect()
+    /// The parameters at which pieces begin and end.
+    #[must_use]
+    pub fn knots(&self) -> &[f64] {
+        self.pieces.breaks()
     }
 
-    fn piece(&self, index: usize) -> &[DVec3] {
+    /// Control points of one piece.
+    #[must_use]
+    pub fn piece(&self, index: usize) -> &[DVec3] {
         &self.points[index * self.degree..=(index + 1) * self.degree]
     }
 
-    fn locate(&self, t: f64, side: Side) -> usize {
-        let inner = &self.knots[1..self.knots.len() - 1];
-        match side {
-            Side::After => inner.partition_point(|knot| *knot <= t),
-            Side::Before => inner.partition_point(|knot| *knot < t),
+    /// The same curve one degree higher.
+    #[must_use]
+    pub fn elevated(&self) -> Self {
+        let mut points = vec![self.points[0]];
+        for index in 0..self.pieces.count() {
+            points.extend(control::elevate(self.piece(index)).into_iter().skip(1));
         }
+        Self { degree: self.degree + 1, points, ..self.clone() }
     }
 
-    /// Local parameter of `t` in piece `index`, 0 to 1.
-    fn local(&self, index: usize, t: f64) -> f64 {
-        let (start, end) = (self.knots[index], self.knots[index + 1]);
-        ((t - start) / (end - start)).clamp(0.0, 1.0)
+    /// The parts before and after a parameter strictly inside the domain, by de Casteljau's scheme; `None` at the
+    /// ends and outside.
+    #[must_use]
+    pub fn split(&self, t: f64) -> Option<(Self, Self)> {
+        let domain = self.domain();
+        if !(t > domain.start && t < domain.end) {
+            return None;
+        }
+        let index = self.pieces.locate(t, Side::Before);
+        let (left, right) = control::split(self.piece(index), self.pieces.local(index, t));
+        let (start, end) = (index * self.degree, (index + 1) * self.degree);
+        let breaks = self.pieces.breaks();
+        let before = [&self.points[..start], &left].concat();
+        let before = Self::with_knots(self.degree, before, [&breaks[..=index], &[t]].concat()).ok()?;
+        // At a break nothing is left of the piece that ends there.
+        let rest = if breaks[index + 1] <= t {
+            (self.points[end..].to_vec(), breaks[index + 1..].to_vec())
+        } else {
+            ([&right, &self.points[end + 1..]].concat(), [&[t], &breaks[index + 1..]].concat())
+        };
+        Some((before, Self::with_knots(self.degree, rest.0, rest.1).ok()?))
+    }
+
+    /// One curve of two, where the second begins at the point and the parameter at which the first ends; `None`
+    /// where it does not, or where the degrees differ.
+    #[must_use]
+    pub fn join(&self, next: &Self) -> Option<Self> {
+        let meets =
+            self.points[self.points.len() - 1] == next.points[0] && self.domain().end == next.domain().start;
+        if !meets || self.degree != next.degree {
+            return None;
+        }
+        let points = [&self.points[..], &next.points[1..]].concat();
+        Self::with_knots(self.degree, points, [self.knots(), &next.knots()[1..]].concat()).ok()
+    }
+
+    fn find_joints(&self) -> Vec<f64> {
+        let mut joints = Vec::new();
+        for index in 0..self.pieces.count() {
+            if index > 0 {
+                joints.push(self.pieces.breaks()[index]);
+            }
+            let cusps = stops(&hodograph(self.piece(index)));
+            joints.extend(cusps.into_iter().map(|local| self.pieces.parameter(index, local)));
+        }
+        joints.retain(|t| turns(self.direction(*t, Side::Before), self.direction(*t, Side::After)));
+        joints
+    }
+
+    fn local_jet(&self, index: usize, local: f64) -> Jet {
+        let [point, first, second] = jet(self.piece(index), local);
+        Jet { point, first, second }
     }
 
     /// Bound for the part of one piece between local parameters.
     fn piece_deviation(&self, index: usize, from: f64, to: f64) -> f64 {
-        let mut inline = [DVec3::ZERO; INLINE];
-        let mut heap = Vec::new();
-        let buffer = scratch(&mut inline, &mut heap, self.piece(index));
-        restrict(buffer, from, to);
-        deviation_of_control_polygon(buffer)
+        with_part(self.piece(index), (from, to), deviation_of_control_polygon)
     }
 }
 
 impl Curve for BezierSpline {
     fn domain(&self) -> Domain {
-        Domain { start: self.knots[0], end: self.knots[self.knots.len() - 1] }
+        self.pieces.domain()
     }
 
     fn is_closed(&self) -> bool {
-        self.closed
+        self.points[0] == self.points[self.points.len() - 1]
     }
 
+    #[inline]
     fn evaluate(&self, t: f64, side: Side) -> Jet {
-        let index = self.locate(t, side);
-        let span = self.knots[index + 1] - self.knots[index];
-        let jet = evaluate_bezier(self.piece(index), self.local(index, t));
-        Jet { point: jet.point, first: jet.first / span, second: jet.second / (span * span) }
+        let index = self.pieces.locate(t, side);
+        self.pieces.scaled(index, &self.local_jet(index, self.pieces.local(index, t)))
     }
 
     fn joints(&self) -> Vec<f64> {
         self.joints.clone()
     }
 
+    fn breaks(&self) -> Vec<f64> {
+        merged(self.pieces.inner(), &self.joints)
+    }
+
     fn chord_deviation(&self, from: f64, to: f64) -> f64 {
-        let (first, last) = (self.locate(from, Side::After), self.locate(to, Side::Before));
-        if first >= last {
-            return self.piece_deviation(first, self.local(first, from), self.local(first, to));
-        }
-        let chord = (self.point(from), self.evaluate(to, Side::Before).point);
-        let mut deviation = 0.0_f64;
-        let mut previous = 0.0;
-        for index in first..=last {
-            let (start, end) = (self.local(index, from), self.local(index, to));
-            let reached = if index == last { chord.1 } else { self.piece(index)[self.degree] };
-            let distance = distance_to_segment(reached, chord);
-            deviation = deviation.max(distance.max(previous) + self.piece_deviation(index, start, end));
-            previous = distance;
-        }
-        deviation
+        self.pieces.chord_deviation(
+            (from, to),
+            |index, local| self.local_jet(index, local).point,
+            |index, start, end| self.piece_deviation(index, start, end),
+        )
+    }
+
+    fn direction(&self, t: f64, side: Side) -> DVec3 {
+        let index = self.pieces.locate(t, side);
+        let local = self.pieces.local(index, t);
+        let piece = self.piece(index);
+        let leading = |at_end: bool| {
+            let origin = piece[if at_end { self.degree } else { 0 }];
+            let ways = piece.iter().map(|point| *point - origin);
+            if at_end { ways.rev().collect() } else { ways.collect() }
+        };
+        direction_within(&self.local_jet(index, local), local, side, leading).unwrap_or(DVec3::X)
     }
 }
 
-/// Distance from a point to a segment.
-pub(super) fn distance_to_segment(point: DVec3, (start, end): (DVec3, DVec3)) -> f64 {
-    let along = end - start;
-    let square = along.length_squared();
-    let place = if square > 0.0 { ((point - start).dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
-    point.distance(start + along * place)
-}
-
-/// Degrees up to this are evaluated without an allocation.
-const INLINE: usize = 8;
-
-fn scratch<'a>(
-    inline: &'a mut [DVec3; INLINE],
-    heap: &'a mut Vec<DVec3>,
-    points: &[DVec3],
-) -> &'a mut [DVec3] {
-    if points.len() <= INLINE {
-        inline[..points.len()].copy_from_slice(points);
-        &mut inline[..points.len()]
-    } else {
-        heap.extend_from_slice(points);
-        heap.as_mut_slice()
-    }
-}
-
-/// Point and derivatives of one Bezier piece at `t` in 0 to 1, by de Casteljau's scheme.
-pub(super) fn evaluate_bezier(points: &[DVec3], t: f64) -> Jet {
-    let mut inline = [DVec3::ZERO; INLINE];
-    let mut heap = Vec::new();
-    let b = scratch(&mut inline, &mut heap, points);
-    let degree = b.len() - 1;
-    let (mut first, mut second) = (DVec3::ZERO, DVec3::ZERO);
-    for level in (1..=degree).rev() {
-        if level == 2 {
-            second = (b[2] - 2.0 * b[1] + b[0]) * (degree * (degree - 1)) as f64;
-        }
-        if level == 1 {
-            first = (b[1] - b[0]) * degree as f64;
-        }
-        for k in 0..level {
-            b[k] = b[k] * (1.0 - t) + b[k + 1] * t;
-        }
-    }
-    Jet { point: b[0], first, second }
-}
-
-/// Replaces control points by those of the part from `from` to `to` (0 to 1), by two de Casteljau cuts.
-fn restrict(b: &mut [DVec3], from: f64, to: f64) {
-    let degree = b.len() - 1;
-    if to < 1.0 {
-        for level in 1..=degree {
-            for k in (level..=degree).rev() {
-                b[k] = b[k - 1] * (1.0 - to) + b[k] * to;
-            }
-        }
-    }
-    if from > 0.0 && to > 0.0 {
-        let cut = from / to;
-        for level in 1..=degree {
-            for k in 0..=degree - level {
-                b[k] = b[k] * (1.0 - cut) + b[k + 1] * cut;
-            }
-        }
-    }
+/// Two increasing lists as one, equal numbers once.
+pub(super) fn merged(one: &[f64], other: &[f64]) -> Vec<f64> {
+    let mut all = [one, other].concat();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
 }
 
 /// Bound on the distance between a Bezier piece and the chord of its ends.
@@ -262,6 +252,7 @@ mod tests {
     use glam::DVec3;
 
     use super::{BezierError, BezierSpline};
+    use crate::geometry::curve::pieces::distance_to_segment;
     use crate::geometry::curve::{Curve, Side};
 
     fn wave() -> BezierSpline {
@@ -298,7 +289,7 @@ mod tests {
             let chord = (curve.point(from), curve.evaluate(to, Side::Before).point);
             let worst = (0..=1000)
                 .map(|step| curve.evaluate(from + (to - from) * f64::from(step) / 1000.0, Side::Before).point)
-                .map(|point| super::distance_to_segment(point, chord))
+                .map(|point| distance_to_segment(point, chord))
                 .fold(0.0, f64::max);
             assert!(worst <= bound * (1.0 + 1e-12), "{from} {to}: {worst} > {bound}");
             assert!(bound < 6.0 * worst, "{from} {to}: {bound} is loose for {worst}");

@@ -48,7 +48,7 @@ fn refine(curve: &impl Curve, (from, to): (f64, f64), whole: f64, depth: u32) ->
 pub fn length(curve: &impl Curve) -> f64 {
     let domain = curve.domain();
     let mut stops = vec![domain.start];
-    stops.extend(curve.joints());
+    stops.extend(curve.breaks());
     stops.push(domain.end);
     stops.windows(2).map(|pair| length_between(curve, pair[0], pair[1])).sum()
 }

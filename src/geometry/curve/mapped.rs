@@ -1,6 +1,6 @@
 //! Curves under an affine map, and curves run backwards.
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
 use super::{AnyCurve, Curve, Domain, Jet, Side};
 
@@ -53,6 +53,19 @@ impl Curve for Transformed {
         self.curve.joints()
     }
 
+    fn breaks(&self) -> Vec<f64> {
+        self.curve.breaks()
+    }
+
+    fn has_curvature(&self) -> bool {
+        self.curve.has_curvature()
+    }
+
+    fn direction(&self, t: f64, side: Side) -> DVec3 {
+        let image = self.map.transform_vector3(self.curve.direction(t, side));
+        image.normalize_or(DVec3::X)
+    }
+
     fn chord_deviation(&self, from: f64, to: f64) -> f64 {
         self.curve.chord_deviation(from, to) * self.stretch
     }
@@ -65,6 +78,8 @@ pub struct Reversed {
     /// Each joint with the parameter that the curve itself has there, increasing: the way from one to the
     /// other rounds, and a joint must be met exactly.
     joints: Vec<(f64, f64)>,
+    /// The same of the breaks.
+    breaks: Vec<(f64, f64)>,
 }
 
 impl Reversed {
@@ -72,8 +87,11 @@ impl Reversed {
     #[must_use]
     pub fn new(curve: AnyCurve) -> Self {
         let domain = curve.domain();
-        let joints = curve.joints().into_iter().rev().map(|t| (domain.start + (domain.end - t), t)).collect();
-        Self { curve: Box::new(curve), joints }
+        let mirrored = |list: Vec<f64>| {
+            list.into_iter().rev().map(|t| (domain.start + (domain.end - t), t)).collect::<Vec<_>>()
+        };
+        let (joints, breaks) = (mirrored(curve.joints()), mirrored(curve.breaks()));
+        Self { curve: Box::new(curve), joints, breaks }
     }
 
     fn mirrored(&self, t: f64) -> f64 {
@@ -84,9 +102,9 @@ impl Reversed {
         if t >= domain.end {
             return domain.start;
         }
-        let near = self.joints.partition_point(|(joint, _)| *joint < t);
-        match self.joints.get(near) {
-            Some((joint, own)) if *joint == t => *own,
+        let near = self.breaks.partition_point(|(place, _)| *place < t);
+        match self.breaks.get(near) {
+            Some((place, own)) if *place == t => *own,
             _ => domain.start + (domain.end - t),
         }
     }
@@ -102,13 +120,24 @@ impl Curve for Reversed {
     }
 
     fn evaluate(&self, t: f64, side: Side) -> Jet {
-        let opposite = if side == Side::Before { Side::After } else { Side::Before };
-        let jet = self.curve.evaluate(self.mirrored(t), opposite);
+        let jet = self.curve.evaluate(self.mirrored(t), side.other());
         Jet { point: jet.point, first: -jet.first, second: jet.second }
     }
 
     fn joints(&self) -> Vec<f64> {
         self.joints.iter().map(|(joint, _)| *joint).collect()
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        self.breaks.iter().map(|(place, _)| *place).collect()
+    }
+
+    fn has_curvature(&self) -> bool {
+        self.curve.has_curvature()
+    }
+
+    fn direction(&self, t: f64, side: Side) -> DVec3 {
+        -self.curve.direction(self.mirrored(t), side.other())
     }
 
     fn chord_deviation(&self, from: f64, to: f64) -> f64 {

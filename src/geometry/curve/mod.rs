@@ -9,6 +9,7 @@
 
 mod any;
 mod bezier;
+pub mod control;
 mod ellipse;
 mod helix;
 mod hyperbola;
@@ -16,7 +17,9 @@ mod length;
 mod mapped;
 mod nearest;
 mod path;
+mod pieces;
 mod polyline;
+mod rational;
 mod spline;
 
 pub use any::AnyCurve;
@@ -29,6 +32,7 @@ pub use mapped::{Reversed, Transformed};
 pub use nearest::{distance_within, nearest_within};
 pub use path::{Continuity, Path, classify};
 pub use polyline::Polyline;
+pub use rational::{RationalError, RationalSpline};
 pub use spline::{Parametrization, SplineError, interpolate, interpolate_closed, parameters};
 
 use glam::DVec3;
@@ -76,6 +80,17 @@ pub enum Side {
     After,
 }
 
+impl Side {
+    /// The other one.
+    #[must_use]
+    pub fn other(self) -> Self {
+        match self {
+            Self::Before => Self::After,
+            Self::After => Self::Before,
+        }
+    }
+}
+
 /// A parametric curve in space.
 pub trait Curve: Send + Sync {
     /// Parameter interval.
@@ -92,6 +107,19 @@ pub trait Curve: Send + Sync {
     /// a polyline. A discretization must keep these points.
     fn joints(&self) -> Vec<f64>;
 
+    /// Parameters strictly inside the domain, increasing, where pieces meet: the joints, and the places where the
+    /// speed or a higher derivative may jump. Between them every derivative is continuous, unless
+    /// [`Curve::has_curvature`] denies it.
+    fn breaks(&self) -> Vec<f64> {
+        self.joints()
+    }
+
+    /// Whether the second derivative is continuous between breaks. Where it is not, `second` of a [`Jet`] is a
+    /// difference quotient.
+    fn has_curvature(&self) -> bool {
+        true
+    }
+
     /// A proved bound on the distance between the chord from `from` to `to` and the part of the curve it
     /// stands for: every point of the chord is that close to the curve and every point of the curve that
     /// close to the chord. No joint may lie strictly between. Zero means straight.
@@ -103,7 +131,8 @@ pub trait Curve: Send + Sync {
     }
 
     /// Unit direction at `t` from the named side. Where the first derivative vanishes (a cusp, a doubled
-    /// control point) it is the limit along the curve, by a short step into that side.
+    /// control point) it is the limit along the curve: by a short step into that side where the kind of curve
+    /// knows no better.
     fn direction(&self, t: f64, side: Side) -> DVec3 {
         let jet = self.evaluate(t, side);
         let domain = self.domain();

@@ -161,6 +161,28 @@ impl Curve for Path {
         self.joints.iter().map(|joint| joint.t).collect()
     }
 
+    fn breaks(&self) -> Vec<f64> {
+        let mut breaks = self.joints();
+        for (index, curve) in self.curves.iter().enumerate() {
+            let domain = curve.domain();
+            breaks.extend((index > 0).then_some(index as f64));
+            let place = |inner: f64| index as f64 + (inner - domain.start) / domain.span();
+            breaks.extend(curve.breaks().into_iter().map(place));
+        }
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
+        breaks
+    }
+
+    fn has_curvature(&self) -> bool {
+        self.curves.iter().all(Curve::has_curvature)
+    }
+
+    fn direction(&self, t: f64, side: Side) -> DVec3 {
+        let (index, inner) = self.locate(t, side);
+        self.curves[index].direction(inner, side)
+    }
+
     fn chord_deviation(&self, from: f64, to: f64) -> f64 {
         let ((first, start), (last, end)) = (self.locate(from, Side::After), self.locate(to, Side::Before));
         let part = |index: usize, start: f64, end: f64| self.curves[index].chord_deviation(start, end);
@@ -175,7 +197,7 @@ impl Curve for Path {
             let start = if index == first { start } else { curve.domain().start };
             let end = if index == last { end } else { curve.domain().end };
             let reached = curve.evaluate(end, Side::Before).point;
-            let distance = super::bezier::distance_to_segment(reached, chord);
+            let distance = super::pieces::distance_to_segment(reached, chord);
             deviation = deviation.max(distance.max(previous) + part(index, start, end));
             previous = distance;
         }

@@ -129,6 +129,14 @@ codes! {
     WrongCount = "K0603";
     /// numbers do not increase
     NotIncreasing = "K0604";
+    /// knots decrease, or differ by almost nothing
+    KnotOrder = "K0605";
+    /// a knot is repeated too often
+    KnotRepeated = "K0606";
+    /// a weight is negative, or too little weight is left to hold the curve
+    BadWeight = "K0607";
+    /// there are too few points for the degree
+    FewPoints = "K0608";
 
     /// a face names a point that does not exist
     FaceIndex = "K0701";

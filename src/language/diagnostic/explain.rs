@@ -136,6 +136,18 @@ examples! {
     NotIncreasing: "The parameters of a spline must increase from point to point.",
         "[curve.a.natural-spline]\npoints = [[0, 0], [1, 0], [2, 0]]\nparameters = [0, 2, 1]" =>
         "[curve.a.natural-spline]\npoints = [[0, 0], [1, 0], [2, 0]]\nparameters = [0, 1, 2]";
+    KnotOrder: "Knots are the parameters at which the pieces of a B-spline meet. They may be equal, but never decrease.",
+        "[curve.a.b-spline]\npoints = [[0, 0], [1, 1], [2, 0]]\ndegree = 2\nknots = [0, 0, 1, 0.5, 2, 2]" =>
+        "[curve.a.b-spline]\npoints = [[0, 0], [1, 1], [2, 0]]\ndegree = 2\nknots = [0, 0, 0.5, 1, 2, 2]";
+    KnotRepeated: "Each repetition of a knot takes one derivative from the smoothness there: as often as the degree it makes a corner, once more it would break the curve. At the ends it may stand once more than the degree.",
+        "[curve.a.b-spline]\npoints = [[0, 0], [1, 1], [2, 0], [3, 1], [4, 0]]\ndegree = 1\nknots = [0, 0, 1, 1, 2, 3, 3]" =>
+        "[curve.a.b-spline]\npoints = [[0, 0], [1, 1], [2, 0], [3, 1], [4, 0]]\ndegree = 1\nknots = [0, 0, 1, 2, 3, 4, 4]";
+    BadWeight: "The weight of a control point says how strongly it draws the curve. It is at least 0; a point of weight 0 lies at infinity in the direction that is written, and enough finite points must stand around it.",
+        "[curve.a.bezier]\npoints = [[1, 0], [0, 1], [-1, 0]]\ndegree = 2\nweights = [1, -1, 1]" =>
+        "[curve.a.bezier]\npoints = [[1, 0], [0, 1], [-1, 0]]\ndegree = 2\nweights = [1, 0, 1]";
+    FewPoints: "An open B-spline needs at least one control point more than its degree.",
+        "[curve.a.b-spline]\npoints = [[0, 0], [1, 1], [2, 0]]" =>
+        "[curve.a.b-spline]\npoints = [[0, 0], [1, 1], [2, 0]]\ndegree = 2";
     FaceIndex: "A face names a point that is not in the list. Indices count from 0.",
         "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[1, 2, 3]]" =>
         "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[0, 1, 2]]";

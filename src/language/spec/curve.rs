@@ -5,6 +5,7 @@ use glam::DVec3;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::arc::Arc;
+use crate::language::spec::bspline::{BSpline, Nurbs};
 use crate::language::spec::check::Check;
 use crate::language::spec::conic::{Conic, Hyperbola, Parabola, check_turn};
 use crate::language::spec::construct::{kinds, table};
@@ -40,6 +41,10 @@ kinds! {
         NaturalSpline(NaturalSpline) = "natural-spline";
         /// Bezier curves joined end to end.
         Bezier(Bezier) = "bezier";
+        /// A smooth curve drawn towards its control points.
+        BSpline(BSpline) = "b-spline";
+        /// A B-spline whose points have weights: circles and ellipses exactly.
+        Nurbs(Nurbs) = "nurbs";
         /// Lines, arcs and splines joined end to end.
         Path(Path) = "path";
         /// Another curve, run through from its end to its start.

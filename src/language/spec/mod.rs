@@ -2,6 +2,7 @@
 
 mod arc;
 mod assertion;
+mod bspline;
 mod check;
 mod combine;
 mod conic;
@@ -34,6 +35,7 @@ mod whole;
 pub use crate::language::suggest::closest;
 pub use arc::{Arc, CenterArc};
 pub use assertion::{Assertion, Demand, Expected};
+pub use bspline::{BSpline, KnotRule, Nurbs};
 pub use combine::{Array, Copy, Group, Mirror, Plane};
 pub use conic::{Conic, ConicForm, Hyperbola, Parabola};
 pub use curve::{Circle, Curve, Ellipse, Helix, Line, Polyline, Reverse, Transform};

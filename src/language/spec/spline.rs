@@ -4,6 +4,7 @@ use serde_json::{Value as Json, json};
 
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
+use crate::language::spec::bspline::check_weights;
 use crate::language::spec::check::Check;
 use crate::language::spec::construct::table;
 use crate::language::spec::kind::choice;
@@ -48,6 +49,9 @@ table! {
         points: Sp<Vec<Sp<Point>>> => Check::items(2);
         /// Degree of each piece: 3 is cubic.
         degree: Sp<u32> = 3 => Check::within(1.0, 25.0);
+        /// A weight for each point, which makes the curve rational: how strongly the point draws it. A point of weight
+        /// 0 lies at infinity in the direction that is written; where pieces end weights are greater than 0.
+        weights: Option<Sp<Vec<Sp<f64>>>>;
     }
     checked check
 }
@@ -147,7 +151,22 @@ impl Bezier {
             reader.report(report);
             return false;
         }
-        self.check_pieces(degree, reader)
+        self.check_weights(degree, reader) && self.check_pieces(degree, reader)
+    }
+
+    fn check_weights(&self, degree: usize, reader: &mut Reader<'_>) -> bool {
+        let Some(weights) = &self.weights else { return true };
+        if !check_weights(weights, self.points.len(), reader) {
+            return false;
+        }
+        let Some(end) = weights.iter().step_by(degree).find(|weight| weight.value == 0.0) else {
+            return true;
+        };
+        let report = Diagnostic::error(Code::BadWeight, "the weight of a point where a piece ends is 0")
+            .at(end.span, "the curve runs to infinity")
+            .help("points at infinity stand between the ends of pieces");
+        reader.report(report);
+        false
     }
 
     fn check_pieces(&self, degree: usize, reader: &mut Reader<'_>) -> bool {
