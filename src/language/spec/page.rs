@@ -27,6 +27,8 @@ const CHAPTERS: [(&str, &str, &[&str]); 5] = [
             "helix",
             "natural-spline",
             "bezier",
+            "b-spline",
+            "nurbs",
             "path",
             "segment",
             "arc segment",
