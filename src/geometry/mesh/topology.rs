@@ -261,23 +261,31 @@ impl Pairing {
     }
 }
 
-/// Sets of triangles, by union-find.
+/// Sets, by union-find.
 struct Joined(Vec<u32>);
 
 impl Joined {
-    fn new(triangles: usize) -> Self {
-        Self((0..index(triangles)).collect())
+    /// This many sets of one each.
+    fn new(count: usize) -> Self {
+        Self((0..index(count)).collect())
     }
 
-    fn find(&mut self, mut triangle: u32) -> u32 {
+    /// Adds a set of one.
+    fn add(&mut self) -> u32 {
+        let one = index(self.0.len());
+        self.0.push(one);
+        one
+    }
+
+    fn find(&mut self, mut one: u32) -> u32 {
         loop {
-            let above = self.0[triangle as usize];
-            if above == triangle {
-                return triangle;
+            let above = self.0[one as usize];
+            if above == one {
+                return one;
             }
             let top = self.0[above as usize];
-            self.0[triangle as usize] = top;
-            triangle = top;
+            self.0[one as usize] = top;
+            one = top;
         }
     }
 
@@ -289,7 +297,7 @@ impl Joined {
     }
 
     fn sets(&self) -> u64 {
-        self.0.iter().zip(0..).filter(|&(&above, triangle)| above == triangle).count() as u64
+        self.0.iter().zip(0..).filter(|&(&above, one)| above == one).count() as u64
     }
 }
 

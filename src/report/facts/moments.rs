@@ -5,7 +5,7 @@
 //! over the tetrahedron 0abc of six-fold volume d the integrals of 1, x and x x^T are d / 6, d s / 24 and
 //! d (aa^T + bb^T + cc^T + ss^T) / 120; over the triangle of area A they are A, A s / 3 and A (...) / 12.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use rayon::iter::{IndexedParallelIterator, ParallelIterator};
 use rayon::slice::ParallelSlice;
 
@@ -23,98 +23,151 @@ pub(super) struct Moments {
     center: DVec3,
     /// Over the inside, times 6, 24 and 120.
     solid: Integrals,
-    /// Over the surface, times 2, 6 and 24; only the first unless [`add_surface`](Self::add_surface) is called.
+    /// Over the surface, times 2, 6 and 24; only the first until [`add_surface`](Self::add_surface).
     surface: Integrals,
     /// Triangles of no area.
     pub(super) degenerate: u64,
 }
 
-/// Sums that blocks add up to.
-trait Sum: Copy + Default + Send {
-    fn add(&mut self, corners: [DVec3; 3]);
-    fn plus(self, other: Self) -> Self;
-}
-
-/// What every mesh needs.
-#[derive(Clone, Copy, Default)]
-struct Inside {
+/// What a block of triangles adds up to.
+#[derive(Clone, Copy, Debug, Default)]
+struct Block {
     integrals: Integrals,
     double_area: f64,
     degenerate: u64,
 }
 
-impl Sum for Inside {
-    #[inline]
-    fn add(&mut self, [a, b, c]: [DVec3; 3]) {
-        let normal = (b - a).cross(c - a);
-        self.double_area += normal.length();
-        self.degenerate += u64::from(normal == DVec3::ZERO);
-        add_scaled(&mut self.integrals, a.dot(normal), [a, b, c]);
-    }
-
-    fn plus(self, other: Self) -> Self {
-        Self {
-            integrals: sum(self.integrals, other.integrals),
-            double_area: self.double_area + other.double_area,
-            degenerate: self.degenerate + other.degenerate,
-        }
+impl Block {
+    fn plus(mut self, other: Self) -> Self {
+        self.integrals.iter_mut().zip(other.integrals).for_each(|(sum, value)| *sum += value);
+        self.double_area += other.double_area;
+        self.degenerate += other.degenerate;
+        self
     }
 }
 
-/// What meshes without an inside need.
-#[derive(Clone, Copy, Default)]
-struct Surface(Integrals);
+/// One coordinate in each of two blocks: processors do arithmetic on two doubles at the price of one. Sums of a
+/// block do not depend on the block beside it.
+type Pair = DVec2;
 
-impl Sum for Surface {
-    #[inline]
-    fn add(&mut self, [a, b, c]: [DVec3; 3]) {
-        add_scaled(&mut self.0, (b - a).cross(c - a).length(), [a, b, c]);
+/// A vector in each of two blocks.
+type Vectors = [Pair; 3];
+
+/// The triangles to sum over, about a center.
+struct Triangles<'a, P, I> {
+    positions: &'a [P],
+    indices: &'a [I],
+    center: DVec3,
+    mass: Mass,
+}
+
+impl<P: Position, I: Corner> Triangles<'_, P, I> {
+    /// Blocks added pairwise: the result does not depend on the number of threads.
+    fn sum(&self) -> Block {
+        let mut blocks: Vec<Block> = if self.indices.len() < 3 * ONE_THREAD {
+            self.indices.chunks(6 * BLOCK).flat_map(|both| self.two_blocks(both)).collect()
+        } else {
+            let pairs = self.indices.par_chunks(6 * BLOCK).with_min_len(8);
+            pairs.flat_map_iter(|both| self.two_blocks(both)).collect()
+        };
+        while blocks.len() > 1 {
+            let add = |pair: &[Block]| pair.iter().copied().reduce(Block::plus).unwrap_or_default();
+            blocks = blocks.chunks(2).map(add).collect();
+        }
+        blocks.pop().unwrap_or_default()
     }
 
-    fn plus(self, other: Self) -> Self {
-        Self(sum(self.0, other.0))
+    /// Two blocks, or at the end what is left of them.
+    fn two_blocks(&self, both: &[I]) -> impl Iterator<Item = Block> + use<P, I> {
+        let (first, second) = both.split_at(both.len().min(3 * BLOCK));
+        let (first, second) = if first.len() == second.len() {
+            let [first, second] = self.blocks(first, second);
+            (first, Some(second))
+        } else {
+            let alone = |block: &[I]| self.blocks(block, block)[0];
+            (alone(first), (!second.is_empty()).then(|| alone(second)))
+        };
+        std::iter::once(first).chain(second)
+    }
+
+    /// Two blocks of the same length.
+    fn blocks(&self, first: &[I], second: &[I]) -> [Block; 2] {
+        let mut sums = [Pair::ZERO; 10];
+        let mut double_areas = Pair::ZERO;
+        let mut degenerate = [0_u64; 2];
+        for (one, other) in first.as_chunks::<3>().0.iter().zip(second.as_chunks::<3>().0) {
+            let [a, b, c] = [0, 1, 2].map(|corner| self.arms(one[corner], other[corner]));
+            let normal = cross(minus(b, a), minus(c, a));
+            let length = dot(normal, normal).map(f64::sqrt);
+            double_areas += length;
+            for (lane, count) in degenerate.iter_mut().enumerate() {
+                *count += u64::from(normal.iter().all(|part| part[lane] == 0.0));
+            }
+            let factor = match self.mass {
+                Mass::Solid => dot(a, normal),
+                Mass::Surface => length,
+            };
+            add_scaled(&mut sums, factor, [a, b, c]);
+        }
+        [0, 1].map(|lane| Block {
+            integrals: sums.map(|sum| sum[lane]),
+            double_area: double_areas[lane],
+            degenerate: degenerate[lane],
+        })
+    }
+
+    /// From the center to a corner in each block.
+    #[inline]
+    fn arms(&self, one: I, other: I) -> Vectors {
+        let [one, other] = [one, other].map(|corner| self.positions[corner.vertex() as usize].coordinates());
+        let pair = |axis: usize| Pair::new(one[axis].into(), other[axis].into());
+        [pair(0) - self.center.x, pair(1) - self.center.y, pair(2) - self.center.z]
+    }
+}
+
+/// Adds the integrals of 1 and the first and second moments over a triangle, times a factor.
+#[inline]
+fn add_scaled(sums: &mut [Pair; 10], factor: Pair, [a, b, c]: [Vectors; 3]) {
+    let s = plus(plus(a, b), c);
+    let squares = plus(plus(plus(times(a, a), times(b, b)), times(c, c)), times(s, s));
+    let mixed = plus(plus(plus(turned(a), turned(b)), turned(c)), turned(s));
+    sums[0] += factor;
+    for axis in 0..3 {
+        sums[1 + axis] += factor * s[axis];
+        sums[4 + axis] += factor * squares[axis];
+        sums[7 + axis] += factor * mixed[axis];
     }
 }
 
 #[inline]
-fn add_scaled(integrals: &mut Integrals, factor: f64, [a, b, c]: [DVec3; 3]) {
-    let s = a + b + c;
-    let squares = a * a + b * b + c * c + s * s;
-    let mixed = turned(a) + turned(b) + turned(c) + turned(s);
-    let shape = [1.0, s.x, s.y, s.z, squares.x, squares.y, squares.z, mixed.x, mixed.y, mixed.z];
-    for (integral, value) in integrals.iter_mut().zip(shape) {
-        *integral += factor * value;
-    }
+fn plus(a: Vectors, b: Vectors) -> Vectors {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-fn sum(mut one: Integrals, other: Integrals) -> Integrals {
-    one.iter_mut().zip(other).for_each(|(one, other)| *one += other);
-    one
+#[inline]
+fn minus(a: Vectors, b: Vectors) -> Vectors {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// Sums over all triangles, block by block; indices must be in range.
-fn summed<S: Sum, P: Position, I: Corner>(positions: &[P], indices: &[I], center: DVec3) -> S {
-    let arm = |corner: &I| {
-        let position = positions[corner.vertex() as usize].coordinates();
-        DVec3::from_array(position.map(f64::from)) - center
-    };
-    let block = |block: &[I]| {
-        let mut sum = S::default();
-        for [a, b, c] in block.as_chunks().0 {
-            sum.add([arm(a), arm(b), arm(c)]);
-        }
-        sum
-    };
-    let mut blocks: Vec<S> = if indices.len() < 3 * ONE_THREAD {
-        indices.chunks(3 * BLOCK).map(block).collect()
-    } else {
-        indices.par_chunks(3 * BLOCK).with_min_len(8).map(block).collect()
-    };
-    while blocks.len() > 1 {
-        blocks =
-            blocks.chunks(2).map(|pair| pair.iter().copied().reduce(S::plus).unwrap_or_default()).collect();
-    }
-    blocks.pop().unwrap_or_default()
+#[inline]
+fn times(a: Vectors, b: Vectors) -> Vectors {
+    [a[0] * b[0], a[1] * b[1], a[2] * b[2]]
+}
+
+#[inline]
+fn dot(a: Vectors, b: Vectors) -> Pair {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline]
+fn cross(a: Vectors, b: Vectors) -> Vectors {
+    [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]]
+}
+
+/// The products yz, zx, xy.
+#[inline]
+fn turned(v: Vectors) -> Vectors {
+    [v[1] * v[2], v[2] * v[0], v[0] * v[1]]
 }
 
 impl Moments {
@@ -123,16 +176,16 @@ impl Moments {
         let Some(bounds) = bounds else { return Self::default() };
         let vector = |position: [f32; 3]| DVec3::from_array(position.map(f64::from));
         let center = (vector(bounds.min) + vector(bounds.max)) * 0.5;
-        let Inside { integrals, double_area, degenerate } = summed(positions, indices, center);
+        let block = Triangles { positions, indices, center, mass: Mass::Solid }.sum();
         let mut surface = Integrals::default();
-        surface[0] = double_area;
-        Self { center, solid: integrals, surface, degenerate }
+        surface[0] = block.double_area;
+        Self { center, solid: block.integrals, surface, degenerate: block.degenerate }
     }
 
-    /// Sums the moments of the surface too.
+    /// Sums the moments of the surface, which only meshes without an inside need.
     pub(super) fn add_surface<P: Position, I: Corner>(&mut self, positions: &[P], indices: &[I]) {
-        let Surface(integrals) = summed(positions, indices, self.center);
-        self.surface = integrals;
+        let center = self.center;
+        self.surface = Triangles { positions, indices, center, mass: Mass::Surface }.sum().integrals;
     }
 
     /// Cubic metres inside.
@@ -173,9 +226,4 @@ impl Moments {
         let (x, y, z) = (squares.x, squares.y, squares.z);
         Some([[y + z, -mixed.z, -mixed.y], [-mixed.z, z + x, -mixed.x], [-mixed.y, -mixed.x, x + y]])
     }
-}
-
-/// The products yz, zx, xy.
-fn turned(v: DVec3) -> DVec3 {
-    DVec3::new(v.y * v.z, v.z * v.x, v.x * v.y)
 }

@@ -1,127 +1,151 @@
 //! The quick way for meshes that are surfaces: around each point the triangles make one fan, closed or open.
 //!
-//! Each triangle puts under each of its points the pair (point after it, point before it). Around a point of an
-//! oriented surface these pairs are links of one chain: where one ends the next begins. That is all there is to
-//! prove: no edge is sorted or hashed, and each is seen from both its ends. Anything else (an edge with three
-//! triangles, two neighbours of opposite orientation, parts that touch at a point, a triangle that uses a point
-//! twice) is left to the general way.
+//! Each corner is a link (point after it, point before it) of the chain around its own point; around a point of an
+//! oriented surface where one link ends the next begins. That is all there is to prove: no edge is sorted or hashed,
+//! and each is seen from both its ends. Anything else (an edge with three triangles, two neighbours of opposite
+//! orientation, parts that touch at a point, a triangle that uses a point twice) is left to the general way.
 
 use super::{Joined, NONE, Topology};
+use crate::geometry::mesh::index;
 
-/// Pairs of one point: the points after and before it in each of its triangles.
+/// The points after and before a point in one of its triangles.
 type Link = [u32; 2];
 
-/// Measures an oriented surface, with or without boundary; none when the mesh is not one. The counts of triangles
-/// and points fit 31 and 32 bits. Linear; at its peak 24 bytes a triangle and 12 bytes a point.
+/// Measures an oriented surface, with or without boundary; none when the mesh is not one. There are fewer than 2^31
+/// corners. Linear; at its peak 12 bytes a triangle and 8 bytes a point.
 pub(super) fn of_surface(
     triangles: usize,
     points: usize,
     point_of: &impl Fn(usize) -> u32,
 ) -> Option<Topology> {
-    let mut joined = Joined::new(points);
-    let mut starts = vec![0_u32; points];
+    let mut corners = Corners::new(triangles, points);
     for triangle in 0..triangles {
-        let [a, b, c] = [0, 1, 2].map(|step| point_of(3 * triangle + step));
-        if a == b || b == c || c == a {
-            return None;
+        let first = 3 * triangle;
+        corners.add([point_of(first), point_of(first + 1), point_of(first + 2)])?;
+    }
+    let components = corners.parts.sets();
+    let mut fan: Vec<Link> = Vec::new();
+    let mut boundary: Vec<[u32; 2]> = Vec::new();
+    let mut used = 0;
+    for point in 0..index(points) {
+        fan.clear();
+        let mut corner = corners.places[point as usize].corner;
+        while corner != NONE {
+            let [after, before] = others(corner);
+            fan.push([point_of(after as usize), point_of(before as usize)]);
+            corner = corners.earlier.as_flattened()[corner as usize];
         }
-        [a, b, c].into_iter().for_each(|point| starts[point as usize] += 1);
-        joined.join(a, b);
-        joined.join(b, c);
+        if fan.is_empty() {
+            continue;
+        }
+        used += 1;
+        if !corners.is_closed(&fan)? {
+            boundary.push([point, corners.first_of_open(&fan)?]);
+        }
     }
-    let unused = starts.iter().filter(|&&count| count == 0).count() as u64;
-    let components = joined.sets() - unused;
-    drop(joined);
-    let mut total = 0;
-    for start in &mut starts {
-        // Each entry ends as the end of its links; filling backwards turns it into the start.
-        total += *start;
-        *start = total;
-    }
-    let links = links(triangles, &mut starts, point_of);
-    let boundary = Fans::new(points).boundary(&starts, &links)?;
-    drop(links);
-    let edges = (3 * triangles + boundary.len()) as u64 / 2;
     Some(Topology {
-        points: points as u64 - unused,
-        edges,
+        points: used,
+        edges: (3 * triangles + boundary.len()) as u64 / 2,
         triangles: triangles as u64,
         closed: boundary.is_empty(),
         manifold: boundary.is_empty(),
         components,
         boundary_edges: boundary.len() as u64,
-        boundary_loops: loops(&boundary, starts),
+        boundary_loops: corners.loops(&boundary),
         ..Topology::default()
     })
 }
 
-/// All links, those of one point together.
-fn links(triangles: usize, starts: &mut [u32], point_of: &impl Fn(usize) -> u32) -> Vec<Link> {
-    let mut links = vec![[0_u32; 2]; 3 * triangles];
-    for triangle in 0..triangles {
-        let [a, b, c] = [0, 1, 2].map(|step| point_of(3 * triangle + step));
-        for (point, link) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
-            let place = &mut starts[point as usize];
-            *place -= 1;
-            links[*place as usize] = link;
-        }
-    }
-    links
+/// What is known of a point.
+#[derive(Clone, Copy)]
+struct Place {
+    /// The last of its corners.
+    corner: u32,
+    /// While corners are added, the part of the surface it is in. Later a link of the point at hand that was noted
+    /// for it: whether the note is of another point's links is seen by looking at the link itself, so notes need not
+    /// be cleared.
+    note: u32,
 }
 
-/// Follows the links around points.
-struct Fans {
-    /// For each point the link of the present point that was last noted for it. Entries of other points are told
-    /// apart by looking at the link itself, so nothing needs to be cleared.
-    noted: Vec<u32>,
+/// The corners of each point as a chain, and the sets of triangles that share points: on a surface these are the
+/// sets that share edges.
+struct Corners {
+    places: Vec<Place>,
+    /// For each corner the corner of the same point before it.
+    earlier: Vec<[u32; 3]>,
+    parts: Joined,
 }
 
-impl Fans {
-    fn new(points: usize) -> Self {
-        Self { noted: vec![NONE; points] }
-    }
-
-    /// The boundary edges (from, to); none when some point has no fan or more than one.
-    fn boundary(mut self, starts: &[u32], links: &[Link]) -> Option<Vec<[u32; 2]>> {
-        let mut boundary = Vec::new();
-        let ends = starts.iter().skip(1).map(|&end| end as usize).chain([links.len()]);
-        for ((point, &start), end) in (0_u32..).zip(starts).zip(ends) {
-            let fan = &links[start as usize..end];
-            if fan.is_empty() || self.is_closed(fan)? {
-                continue;
-            }
-            boundary.push([point, self.first_of_open(fan)?]);
+impl Corners {
+    fn new(triangles: usize, points: usize) -> Self {
+        Self {
+            places: vec![Place { corner: NONE, note: NONE }; points],
+            earlier: Vec::with_capacity(triangles),
+            parts: Joined::new(0),
         }
-        Some(boundary)
     }
 
-    /// Notes for each link the point on one of its sides; none when two links share one.
-    fn note(&mut self, fan: &[Link], side: usize) -> Option<()> {
-        for (place, link) in (0_u32..).zip(fan) {
-            // What an earlier point noted may happen to be right.
-            if self.find(fan, side, link[side]).is_some_and(|found| found != place as usize) {
-                return None;
-            }
-            self.noted[link[side] as usize] = place;
+    /// Adds a triangle; none when it uses a point twice.
+    #[inline]
+    fn add(&mut self, points: [u32; 3]) -> Option<()> {
+        let [a, b, c] = points;
+        if a == b || b == c || c == a {
+            return None;
+        }
+        let first = 3 * index(self.earlier.len());
+        let mut parts = [NONE; 3];
+        let mut earlier = [NONE; 3];
+        for (step, corner) in (first..first + 3).enumerate() {
+            let place = &mut self.places[points[step] as usize];
+            parts[step] = place.note;
+            earlier[step] = std::mem::replace(&mut place.corner, corner);
+        }
+        self.earlier.push(earlier);
+        if parts[0] != parts[1] || parts[1] != parts[2] || parts[2] == NONE {
+            self.unite(points, parts);
         }
         Some(())
     }
 
+    /// Puts the points of a triangle, which are in these parts or in none yet, into one part.
+    #[inline]
+    fn unite(&mut self, points: [u32; 3], parts: [u32; 3]) {
+        let least = parts[0].min(parts[1]).min(parts[2]);
+        let part = if least == NONE { self.parts.add() } else { least };
+        for step in 0..3 {
+            if parts[step] == NONE {
+                self.places[points[step] as usize].note = part;
+            } else if parts[step] != part {
+                self.parts.join(parts[step], part);
+            }
+        }
+    }
+
+    /// Notes each link for the point on one of its sides.
+    #[inline]
+    fn note(&mut self, fan: &[Link], side: usize) {
+        for (place, link) in (0..).zip(fan) {
+            self.places[link[side] as usize].note = place;
+        }
+    }
+
     /// The link with this point on this side.
+    #[inline]
     fn find(&self, fan: &[Link], side: usize, point: u32) -> Option<usize> {
-        let place = self.noted[point as usize] as usize;
+        let place = self.places[point as usize].note as usize;
         fan.get(place).filter(|link| link[side] == point).map(|_| place)
     }
 
-    /// Whether the links make one closed chain; none when two of them begin at the same point.
+    /// Whether the links make one closed chain; none when they make closed chains that touch. Of two links that
+    /// begin at one point only one is found, so such links are no closed chain.
+    #[inline]
     fn is_closed(&mut self, fan: &[Link]) -> Option<bool> {
-        self.note(fan, 0)?;
+        self.note(fan, 0);
         let mut at = 0;
         for step in 1..=fan.len() {
             match self.find(fan, 0, fan[at][1]) {
-                // Coming back early leaves out links: parts that touch at this point.
                 Some(0) => return (step == fan.len()).then_some(true),
-                Some(next) => at = next,
+                Some(after) => at = after,
                 None => return Some(false),
             }
         }
@@ -131,36 +155,56 @@ impl Fans {
 
     /// The point at which the one open chain of all links begins; none when there is no such chain.
     fn first_of_open(&mut self, fan: &[Link]) -> Option<u32> {
-        let after = (0..fan.len()).try_fold((0, 0), |(at, steps), _| {
-            self.find(fan, 0, fan[at][1]).map_or(Err(steps), |next| Ok((next, steps + 1)))
-        });
-        let after = after.err()?;
-        self.note(fan, 1)?;
-        let (mut at, mut before) = (0, 0);
-        while let Some(next) = self.find(fan, 1, fan[at][0]) {
-            (at, before) = (next, before + 1);
-            if before >= fan.len() {
-                return None;
+        let after = self.is_distinct(fan, 0).then(|| self.follow(fan, 0))?;
+        self.note(fan, 1);
+        let before = self.is_distinct(fan, 1).then(|| self.follow(fan, 1))?;
+        // Where all are distinct there are chains and rings side by side: this is the chain of the first link.
+        (after.1 + before.1 + 1 == fan.len()).then_some(fan[before.0][0])
+    }
+
+    /// Whether the links, noted by this side, have different points on it.
+    fn is_distinct(&self, fan: &[Link], side: usize) -> bool {
+        (0..).zip(fan).all(|(place, link)| self.places[link[side] as usize].note == place)
+    }
+
+    /// The last link met from the first on, looking for links by this side, and the number of steps to it.
+    fn follow(&self, fan: &[Link], side: usize) -> (usize, usize) {
+        let mut at = 0;
+        for step in 0..fan.len() {
+            match self.find(fan, side, fan[at][1 - side]) {
+                Some(onward) => at = onward,
+                None => return (at, step),
             }
         }
-        (after + before + 1 == fan.len()).then_some(fan[at][0])
+        (at, fan.len())
+    }
+
+    /// Closed chains of boundary edges: each point on the boundary has one edge that leaves it and one that comes.
+    fn loops(mut self, boundary: &[[u32; 2]]) -> u64 {
+        for &[from, to] in boundary {
+            self.places[from as usize].corner = to;
+        }
+        let mut loops = 0;
+        for &[from, _] in boundary {
+            let mut at = from;
+            let mut fresh = false;
+            while at != NONE {
+                let onward = std::mem::replace(&mut self.places[at as usize].corner, NONE);
+                fresh |= onward != NONE;
+                at = onward;
+            }
+            loops += u64::from(fresh);
+        }
+        loops
     }
 }
 
-/// Closed chains of boundary edges: each point on the boundary has one edge that leaves it and one that comes.
-fn loops(boundary: &[[u32; 2]], mut onward: Vec<u32>) -> u64 {
-    for &[from, to] in boundary {
-        onward[from as usize] = to;
+/// The corners after and before a corner in its triangle.
+#[inline]
+fn others(corner: u32) -> [u32; 2] {
+    match corner % 3 {
+        0 => [corner + 1, corner + 2],
+        1 => [corner + 1, corner - 1],
+        _ => [corner - 2, corner - 1],
     }
-    let mut loops = 0;
-    for &[from, _] in boundary {
-        let mut at = from;
-        let mut fresh = false;
-        while onward[at as usize] != NONE {
-            at = std::mem::replace(&mut onward[at as usize], NONE);
-            fresh = true;
-        }
-        loops += u64::from(fresh);
-    }
-    loops
 }
