@@ -278,7 +278,6 @@ impl<'a> Builder<'a> {
         let points: u64 = plan.steps.iter().map(|steps| u64::from(*steps) + 1).sum();
         let triangles: u64 = plan.steps.windows(2).map(|pair| count(pair[0], pair[1])).sum();
         mesh.points.reserve_exact(size(points));
-        mesh.vertices.reserve_exact(size(points));
         mesh.triangles.reserve_exact(size(triangles));
         Self { plan, shape, detail, mesh, rings: Vec::new(), angles: (0, Vec::new()) }
     }
@@ -295,7 +294,20 @@ impl<'a> Builder<'a> {
         }
     }
 
+    /// At least as many vertices as all rows have: two rows at hard joints and at poles inside the profile.
+    fn vertices(&self) -> u64 {
+        let last = self.plan.stations.len() - 1;
+        let row = |index: usize| {
+            let (before, after) = self.normals(index);
+            let single = index == 0 || index == last || (before == after && !self.plan.on_axis(index));
+            let (lower, upper) = self.row_steps(index);
+            (u64::from(lower.max(upper)) + 1) * if single { 1 } else { 2 }
+        };
+        (0..=last).map(row).sum()
+    }
+
     fn rows(&mut self) {
+        self.mesh.vertices.reserve_exact(size(self.vertices()));
         let stations = self.plan.stations.len();
         let mut below: Option<Row> = None;
         let mut first: Option<Row> = None;

@@ -365,9 +365,9 @@ impl Plan {
     fn build(self, shape: &Sweep, detail: &Detail) -> Result<Tessellation, TessellateError> {
         let mut mesh = Mesh::default();
         let (columns, rows) = (self.point_columns(), self.point_rows());
+        mesh.points.reserve_exact(rows * columns);
         for row in 0..rows {
-            let ring: Vec<DVec3> = (0..columns).map(|column| self.position(row, column)).collect();
-            mesh.points.extend(ring);
+            mesh.points.extend((0..columns).map(|column| self.position(row, column)));
         }
         for (first, last) in hard_runs(&self.path, detail) {
             for (left, right) in hard_runs(&self.profile, detail) {
@@ -426,6 +426,8 @@ impl Plan {
         let rows = last - first + usize::from(!round_path);
         let columns = right - left + usize::from(!round_profile);
         let base = mesh::index(mesh.vertices.len());
+        mesh.vertices.reserve(rows * columns);
+        mesh.triangles.reserve(2 * (last - first) * (right - left));
         let directions: Vec<DVec3> = (left..left + columns)
             .map(|column| self.direction(column, (column == left, column == right), detail))
             .collect();

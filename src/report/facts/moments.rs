@@ -96,13 +96,14 @@ impl<P: Position, I: Corner> Triangles<'_, P, I> {
         let mut double_areas = Pair::ZERO;
         let mut degenerate = [0_u64; 2];
         for (one, other) in first.as_chunks::<3>().0.iter().zip(second.as_chunks::<3>().0) {
-            let [a, b, c] = [0, 1, 2].map(|corner| self.arms(one[corner], other[corner]));
+            let (a, b, c) =
+                (self.arms(one[0], other[0]), self.arms(one[1], other[1]), self.arms(one[2], other[2]));
             let normal = cross(minus(b, a), minus(c, a));
-            let length = dot(normal, normal).map(f64::sqrt);
+            let square = dot(normal, normal);
+            let length = Pair::new(square.x.sqrt(), square.y.sqrt());
             double_areas += length;
-            for (lane, count) in degenerate.iter_mut().enumerate() {
-                *count += u64::from(normal.iter().all(|part| part[lane] == 0.0));
-            }
+            degenerate[0] += u64::from(normal[0].x == 0.0 && normal[1].x == 0.0 && normal[2].x == 0.0);
+            degenerate[1] += u64::from(normal[0].y == 0.0 && normal[1].y == 0.0 && normal[2].y == 0.0);
             let factor = match self.mass {
                 Mass::Solid => dot(a, normal),
                 Mass::Surface => length,
@@ -119,7 +120,8 @@ impl<P: Position, I: Corner> Triangles<'_, P, I> {
     /// From the center to a corner in each block.
     #[inline]
     fn arms(&self, one: I, other: I) -> Vectors {
-        let [one, other] = [one, other].map(|corner| self.positions[corner.vertex() as usize].coordinates());
+        let one = self.positions[one.vertex() as usize].coordinates();
+        let other = self.positions[other.vertex() as usize].coordinates();
         let pair = |axis: usize| Pair::new(one[axis].into(), other[axis].into());
         [pair(0) - self.center.x, pair(1) - self.center.y, pair(2) - self.center.z]
     }

@@ -18,7 +18,7 @@ impl Position for [u8; 12] {
     #[inline]
     fn coordinates(self) -> [f32; 3] {
         let [a, b, c, d, e, f, g, h, i, j, k, l] = self;
-        [[a, b, c, d], [e, f, g, h], [i, j, k, l]].map(f32::from_le_bytes)
+        [f32::from_le_bytes([a, b, c, d]), f32::from_le_bytes([e, f, g, h]), f32::from_le_bytes([i, j, k, l])]
     }
 }
 
