@@ -10,6 +10,7 @@ mod inspect;
 mod output;
 mod project;
 mod sample;
+mod sample_curve;
 mod starter;
 mod told;
 

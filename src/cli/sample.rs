@@ -7,8 +7,9 @@ use super::Outcome;
 use super::arguments::Sample;
 use super::output::Printer;
 use super::project::{reason, task};
+use super::sample_curve::describe;
 use crate::compile::{self, Options};
-use crate::geometry::curve::{Curve, Domain, Side, length};
+use crate::geometry::curve::{Curve, Domain};
 use crate::geometry::surface::{ExtrudedSurface, RevolvedSurface, Surface, SweptSurface};
 use crate::model::{Model, Recipe};
 
@@ -69,21 +70,7 @@ fn of_curve(
     } else {
         sample.at.iter().map(|text| parameter(text, domain)).collect::<Result<Vec<_>, _>>()?
     };
-    let points: Vec<Value> = places
-        .iter()
-        .map(|t| {
-            let jet = curve.evaluate(*t, if *t >= domain.end { Side::Before } else { Side::After });
-            json!({ "t": t, "point": numbers(jet.point), "first": numbers(jet.first), "second": numbers(jet.second) })
-        })
-        .collect();
-    Ok(json!({
-        "curve": name,
-        "domain": [domain.start, domain.end],
-        "closed": curve.is_closed(),
-        "length": length(curve),
-        "joints": curve.joints(),
-        "samples": points,
-    }))
+    Ok(describe(name, curve, &places))
 }
 
 fn parameter(text: &str, domain: Domain) -> Result<f64, String> {

@@ -53,12 +53,46 @@ pub fn length(curve: &impl Curve) -> f64 {
     stops.windows(2).map(|pair| length_between(curve, pair[0], pair[1])).sum()
 }
 
+/// Length from the start of the curve to each of some parameters (its natural parameter), metres; they may
+/// stand in any order. Parameters outside the domain are taken as its ends.
+#[must_use]
+pub fn lengths_at(curve: &impl Curve, parameters: &[f64]) -> Vec<f64> {
+    let domain = curve.domain();
+    let inside = |index: usize| parameters[index].clamp(domain.start, domain.end);
+    let mut order: Vec<usize> = (0..parameters.len()).collect();
+    order.sort_by(|a, b| inside(*a).total_cmp(&inside(*b)));
+    let breaks = curve.breaks();
+    let mut breaks = breaks.iter().copied().peekable();
+    let mut lengths = vec![0.0; parameters.len()];
+    let (mut reached, mut total) = (domain.start, 0.0);
+    for index in order {
+        let t = inside(index);
+        while let Some(stop) = breaks.next_if(|stop| *stop < t) {
+            total += length_between(curve, reached, stop);
+            reached = stop;
+        }
+        if t > reached {
+            total += length_between(curve, reached, t);
+            reached = t;
+        }
+        lengths[index] = total;
+    }
+    lengths
+}
+
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
 
-    use super::length;
+    use super::{length, lengths_at};
     use crate::geometry::curve::{BezierSpline, EllipseArc, Helix, Polyline};
+
+    #[test]
+    fn lengths_along_a_curve_add_up() {
+        let points = [(0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (4.0, 2.0)].map(|(x, y)| DVec3::new(x, y, 0.0));
+        let line = Polyline::new(points.to_vec(), false).unwrap();
+        assert_eq!(lengths_at(&line, &[3.0, 0.0, 0.5, 2.0, 9.0, -1.0]), [6.0, 0.0, 0.5, 3.0, 6.0, 0.0]);
+    }
 
     #[test]
     fn closed_forms() {

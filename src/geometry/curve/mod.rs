@@ -27,7 +27,7 @@ pub use bezier::{BezierError, BezierSpline};
 pub use ellipse::EllipseArc;
 pub use helix::Helix;
 pub use hyperbola::HyperbolaArc;
-pub use length::{length, length_between, length_of_step};
+pub use length::{length, length_between, length_of_step, lengths_at};
 pub use mapped::{Reversed, Transformed};
 pub use nearest::{distance_within, nearest_within};
 pub use path::{Continuity, Path, classify};

@@ -100,7 +100,9 @@ impl RationalSpline {
         self.pieces.breaks()
     }
 
-    fn piece(&self, index: usize) -> &[DVec4] {
+    /// Homogeneous control points of one piece.
+    #[must_use]
+    pub fn piece(&self, index: usize) -> &[DVec4] {
         &self.points[index * self.degree..=(index + 1) * self.degree]
     }
 
