@@ -2,6 +2,7 @@
 
 mod architecture;
 mod bake;
+mod curves;
 mod import;
 mod language;
 mod laws;

@@ -78,6 +78,36 @@ nine.nurbs = { points = [[0, -1], [-1, -1], [-1, 0], [-1, 1], [0, 1], [1, 1], [1
 heavy.nurbs = { points = [[0, 0], [1, 2], [3, 1, 1], [4, 0], [5, 2], [6, 1], [7, 3]], weights = [1, 10, 0.1, 3, 0, 2, 1] }
 conic.bezier = { points = [[1, 0], [1, 1, 0.5], [0, 1]], degree = 2, weights = [1, 0.3, 2] }
 rcusp.bezier = { points = [[0, 0], [1, 1], [0, 1], [1, 0]], weights = [1, 1, 1, 1] }
+nielsen.spline = { points = [[0, 0], [3, 4, 1], [-1, 4], [-4, 0, 2], [-4, -3]], parameters = "nielsen", ends = "not-a-knot" }
+clamped.spline = { points = [[0, 0], [3, 4, 1], [-1, 4], [-4, 0, 2], [-4, -3]], start = { first = [0, 1, 2] }, end = { second = [0.5, 0.1, 0] } }
+resting.spline = { points = [[0, 0], [3, 4, 1], [-1, 4]], ends = "clamped" }
+nring.spline = { points = [[0, 0], [3, 4, 1], [-1, 4], [-4, 0, 2]], closed = true, parameters = "nielsen" }
+table.function-spline = { points = [[0, 1], [0.5, 2], [2, 0.5], [2.5, 0.25]], start = { first = -1 }, end = "not-a-knot" }
+period.function-spline = { points = [[0, 1], [0.5, 2], [2, 0.5], [2.5, 1]], periodic = true }
+ferguson.hermite = { points = [[0, 0], [1, 2], [3, 1, 1]], tangents = [[2, 0], [1, 1, 1], [0, -2, 1]] }
+fring.hermite = { points = [[0, 0], [1, 2], [3, 1, 1]], tangents = [[2, 0], [1, 1, 1], [0, -2, 1]], closed = true, parameters = "chordal" }
+rhermite.hermite = { points = [[0, 0], [1, 2], [3, 1, 1]], tangents = [[2, 0], [1, 1, 1], [0, -2, 1]], weights = [1, 3, 0.5], weight-rates = [2, -3, 0.5] }
+catmull.catmull-rom = { points = [[5, 10], [15, 25], [30, 30], [45, 5, 3], [55, 5], [70, 40]] }
+chordalrom.catmull-rom = { points = [[5, 10], [15, 25], [30, 30], [45, 5, 3], [55, 5], [70, 40]], alpha = "chordal", ends = "guides" }
+romring.catmull-rom = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5], [0.7, 2.2], [-0.6, 1.4]], alpha = 0.3, closed = true }
+quad.catmull-rom = { points = [[0, 0], [2, -0.5], [3, 1]], alpha = "uniform", ends = "quadratic" }
+tight.cardinal = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5]], tension = 0.5, ends = "reflect" }
+straightened.cardinal = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5]], tension = 1 }
+loosering.cardinal = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5]], scale = 0.7, closed = true }
+kochanek.kochanek-bartels = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5]], tension = [0, 0.5, -0.5, 0], continuity = [0, 0, -0.7, 0], bias = 0.3, ends = "duplicate" }
+kring.kochanek-bartels = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5]], continuity = 0.5, parameters = "centripetal", closed = true }
+beta.beta-spline = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5]], bias = 2, tension = 5 }
+betaring.beta-spline = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5]], bias = 0.5, tension = 1, closed = true }
+powers.cubic = { coefficients = [[[0, 0], [1, 0], [0, 0], [0, 1]], [[1, 1], [1, 3], [0, 0], [0, 0.5, 1]]] }
+window.cubic = { basis = [[-0.5, 1.5, -1.5, 0.5], [1, -2.5, 2, -0.5], [-0.5, 0, 0.5, 0], [0, 1, 0, 0]], points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5], [0.7, 2.2]], closed = true }
+pairs.cubic = { basis = "hermite", points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5], [2, -0.5], [4, 4], [1, -3], [1, 1]] }
+corners.subdivision = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5, 1]], scheme = "chaikin" }
+chaikin.subdivision = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5]], scheme = "chaikin", closed = true }
+cutter.subdivision = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5, 1]], scheme = "chaikin", ends = "cut", levels = 2 }
+three-p.subdivision = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5, 1]], scheme = "three-point" }
+three-r.subdivision = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5, 1]], scheme = "three-point", closed = true }
+fourpoint.subdivision = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5, 1]], scheme = "four-point" }
+fourpoint-r.subdivision = { points = [[0, 0], [2, -0.5], [3, 1], [2.2, 2.5, 1]], scheme = "four-point", tension = 0.05, closed = true }
 mixed.path = { start = [0, 0], segments = [
   { line = [[1, 0], [2, 1], [2, 2]] }, { arc = { through = [1.5, 3], to = [1, 2.5] } },
   { natural-spline = [[0, 2], [-1, 1], [-1, 0.5]] }, { quadratic = [[-1, 0], [-0.5, 0]] },

@@ -10,7 +10,7 @@ use crate::geometry::curve::{
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{
-    Arc, ArcSegment, Bezier, Curve, CurveReference, Joint, NaturalSpline, Parameters, Point, Segment, Sp,
+    Arc, ArcSegment, Bezier, Curve, CurveReference, Joint, NaturalSpline, Point, Segment, Sp,
 };
 
 pub(super) fn positions(points: &[Sp<Point>]) -> Vec<DVec3> {
@@ -62,6 +62,15 @@ impl Builder<'_> {
             })),
             Curve::NaturalSpline(spline) => self.natural_spline(spline, span),
             Curve::Bezier(bezier) => self.bezier(bezier, span),
+            Curve::Spline(spline) => self.spline(spline, span),
+            Curve::FunctionSpline(spline) => self.function_spline(spline, span),
+            Curve::Hermite(curve) => self.hermite(curve, span),
+            Curve::CatmullRom(curve) => self.catmull_rom(curve, span),
+            Curve::Cardinal(curve) => self.cardinal(curve, span),
+            Curve::KochanekBartels(curve) => self.kochanek_bartels(curve, span),
+            Curve::BetaSpline(curve) => self.beta_spline(curve, span),
+            Curve::Cubic(curve) => self.cubic(curve, span),
+            Curve::SubdivisionCurve(curve) => self.subdivision_curve(curve, span),
             Curve::BSpline(spline) => self.b_spline(spline, span),
             Curve::Nurbs(spline) => self.nurbs(spline, span),
             Curve::Path(path) => self.path(path),
@@ -103,27 +112,13 @@ impl Builder<'_> {
     fn natural_spline(&mut self, spline: &NaturalSpline, span: Span) -> Option<AnyCurve> {
         let points = positions(&spline.points);
         let closed = spline.closed.value;
-        let rule = match &spline.parameters.value {
-            Parameters::Uniform => Parametrization::Uniform,
-            Parameters::Chordal => Parametrization::Chordal,
-            Parameters::Centripetal => Parametrization::Centripetal,
-            Parameters::Given(numbers) => {
-                let numbers: Vec<f64> = numbers.iter().map(|number| number.value).collect();
-                return self.through(&points, &numbers, closed, span);
-            }
-        };
-        match parameters(&points, closed, rule) {
-            Ok(numbers) => self.through(&points, &numbers, closed, span),
-            Err(error) => self.degenerate(&error.to_string(), span),
-        }
+        let numbers = self.numbers(&points, closed, &spline.parameters.value, span)?;
+        self.through(&points, &numbers, closed, span)
     }
 
     fn through(&mut self, points: &[DVec3], numbers: &[f64], closed: bool, span: Span) -> Option<AnyCurve> {
         let built = if closed { interpolate_closed(points, numbers) } else { interpolate(points, numbers) };
-        match built {
-            Ok(curve) => Some(AnyCurve::Bezier(curve)),
-            Err(error) => self.degenerate(&error.to_string(), span),
-        }
+        self.made(built, span)
     }
 
     pub(super) fn degenerate<T>(&mut self, message: &str, span: Span) -> Option<T> {

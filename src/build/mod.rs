@@ -13,6 +13,7 @@ mod node;
 mod primitive;
 mod profile;
 mod shape;
+mod spline;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use indexmap::IndexMap;

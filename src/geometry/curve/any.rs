@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::{
-    BezierSpline, Curve, Domain, EllipseArc, Helix, HyperbolaArc, Jet, Path, Polyline, RationalSpline,
-    Reversed, Side, Transformed,
+    BezierSpline, Curve, Domain, EllipseArc, FourPointCurve, Helix, HyperbolaArc, Jet, Path, Polyline,
+    RationalSpline, Reversed, Side, Transformed,
 };
 
 /// A curve of any kind.
@@ -22,6 +22,8 @@ pub enum AnyCurve {
     Bezier(BezierSpline),
     /// Rational Bezier pieces: NURBS among them.
     Rational(RationalSpline),
+    /// The limit of the four-point scheme.
+    FourPoint(FourPointCurve),
     /// Curves end to start.
     Path(Path),
     /// A curve under an affine map.
@@ -39,6 +41,7 @@ macro_rules! each_kind {
             AnyCurve::Helix($curve) => $body,
             AnyCurve::Bezier($curve) => $body,
             AnyCurve::Rational($curve) => $body,
+            AnyCurve::FourPoint($curve) => $body,
             AnyCurve::Path($curve) => $body,
             AnyCurve::Transformed($curve) => $body,
             AnyCurve::Reversed($curve) => $body,

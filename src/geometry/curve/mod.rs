@@ -11,21 +11,31 @@ mod any;
 mod bezier;
 pub mod control;
 mod ellipse;
+mod four_point;
 mod helix;
+mod hermite;
 mod hyperbola;
 mod length;
 mod mapped;
 mod nearest;
+mod nielsen;
 mod path;
 mod pieces;
 mod polyline;
 mod rational;
 mod spline;
+mod spline_ends;
+mod subdivision;
+mod windows;
 
 pub use any::AnyCurve;
 pub use bezier::{BezierError, BezierSpline};
 pub use ellipse::EllipseArc;
+pub use four_point::FourPointCurve;
 pub use helix::Helix;
+pub use hermite::{
+    Bartels, EndRule, HermiteKnot, alpha_parameters, hermite, rational_hermite, through, through_closed,
+};
 pub use hyperbola::HyperbolaArc;
 pub use length::{length, length_between, length_of_step, lengths_at};
 pub use mapped::{Reversed, Transformed};
@@ -34,6 +44,9 @@ pub use path::{Continuity, Path, classify};
 pub use polyline::Polyline;
 pub use rational::{RationalError, RationalSpline};
 pub use spline::{Parametrization, SplineError, interpolate, interpolate_closed, parameters};
+pub use spline_ends::{SplineEnd, interpolate_with};
+pub use subdivision::{Border, Scheme, chaikin_limit, fewest, refine, three_point_limit};
+pub use windows::{beta_spline, windows};
 
 use glam::DVec3;
 

@@ -8,7 +8,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use super::BezierSpline;
+use super::{BezierSpline, nielsen};
 
 /// How parameters are given to the points of a spline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +19,8 @@ pub enum Parametrization {
     Chordal,
     /// Steps as the square roots of the distances.
     Centripetal,
+    /// Steps that an affine map of the points does not change (Nielsen, Foley).
+    Nielsen,
 }
 
 /// Why points do not make a spline.
@@ -63,6 +65,12 @@ pub enum SplineError {
 pub fn parameters(points: &[DVec3], closed: bool, rule: Parametrization) -> Result<Vec<f64>, SplineError> {
     let steps = if closed { points.len() } else { points.len().saturating_sub(1) };
     let mut parameters = vec![0.0];
+    if rule == Parametrization::Nielsen && steps > 0 {
+        for step in nielsen::steps(points, closed)? {
+            parameters.push(parameters[parameters.len() - 1] + step);
+        }
+        return Ok(parameters);
+    }
     for first in 0..steps {
         let second = (first + 1) % points.len();
         let distance = points[first].distance(points[second]);
@@ -71,7 +79,7 @@ pub fn parameters(points: &[DVec3], closed: bool, rule: Parametrization) -> Resu
         }
         let step = match rule {
             Parametrization::Uniform => 1.0,
-            Parametrization::Chordal => distance,
+            Parametrization::Chordal | Parametrization::Nielsen => distance,
             Parametrization::Centripetal => distance.sqrt(),
         };
         parameters.push(parameters[first] + step);
@@ -79,7 +87,7 @@ pub fn parameters(points: &[DVec3], closed: bool, rule: Parametrization) -> Resu
     Ok(parameters)
 }
 
-fn check(parameters: &[f64], expected: usize) -> Result<(), SplineError> {
+pub(super) fn check(parameters: &[f64], expected: usize) -> Result<(), SplineError> {
     if parameters.len() != expected {
         return Err(SplineError::Count { expected, found: parameters.len() });
     }
@@ -120,11 +128,11 @@ pub fn interpolate(points: &[DVec3], parameters: &[f64]) -> Result<BezierSpline,
 /// The periodic cubic spline through `points`; `parameters` has one more entry, for the return to the first.
 ///
 /// # Errors
-/// For fewer than three points, a wrong number of parameters, or parameters that do not increase.
+/// For fewer than two points, a wrong number of parameters, or parameters that do not increase.
 pub fn interpolate_closed(points: &[DVec3], parameters: &[f64]) -> Result<BezierSpline, SplineError> {
     let count = points.len();
-    if count < 3 {
-        return Err(SplineError::Few { least: 3, found: count });
+    if count < 2 {
+        return Err(SplineError::Few { least: 2, found: count });
     }
     check(parameters, count + 1)?;
     let steps: Vec<f64> = parameters.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -134,14 +142,20 @@ pub fn interpolate_closed(points: &[DVec3], parameters: &[f64]) -> Result<Bezier
     let right: Vec<DVec3> = (0..count)
         .map(|k| moment_right(points[before(k)], points[k], points[after(k)], steps[before(k)], steps[k]))
         .collect();
-    let mut moments = solve_cyclic(&steps, &diagonal, right);
+    let mut moments = if count == 2 {
+        // Both neighbours of a point are the other one: h (2 M[0] + M[1]) = right[0], with h of the whole period.
+        let third = 1.0 / (3.0 * (steps[0] + steps[1]));
+        vec![(right[0] * 2.0 - right[1]) * third, (right[1] * 2.0 - right[0]) * third]
+    } else {
+        solve_cyclic(&steps, &diagonal, right)
+    };
     moments.push(moments[0]);
     let mut ring = points.to_vec();
     ring.push(points[0]);
     Ok(from_moments(&ring, parameters, &steps, &moments))
 }
 
-fn moment_right(a: DVec3, b: DVec3, c: DVec3, step_before: f64, step_after: f64) -> DVec3 {
+pub(super) fn moment_right(a: DVec3, b: DVec3, c: DVec3, step_before: f64, step_after: f64) -> DVec3 {
     ((c - b) / step_after - (b - a) / step_before) * 6.0
 }
 
@@ -183,7 +197,12 @@ fn solve_cyclic(steps: &[f64], diagonal: &[f64], mut right: Vec<DVec3>) -> Vec<D
 }
 
 /// Bezier pieces from points and second derivatives at the knots.
-fn from_moments(points: &[DVec3], parameters: &[f64], steps: &[f64], moments: &[DVec3]) -> BezierSpline {
+pub(super) fn from_moments(
+    points: &[DVec3],
+    parameters: &[f64],
+    steps: &[f64],
+    moments: &[DVec3],
+) -> BezierSpline {
     let mut control = Vec::with_capacity(3 * steps.len() + 1);
     control.push(points[0]);
     for (k, step) in steps.iter().enumerate() {
@@ -223,7 +242,13 @@ mod tests {
     #[test]
     fn natural_spline_interpolates_with_two_derivatives_and_free_ends() {
         let points = zigzag();
-        for rule in [Parametrization::Uniform, Parametrization::Chordal, Parametrization::Centripetal] {
+        let rules = [
+            Parametrization::Uniform,
+            Parametrization::Chordal,
+            Parametrization::Centripetal,
+            Parametrization::Nielsen,
+        ];
+        for rule in rules {
             let knots = parameters(&points, false, rule).unwrap();
             let curve = interpolate(&points, &knots).unwrap();
             for (knot, point) in knots.iter().zip(&points) {
@@ -245,6 +270,15 @@ mod tests {
         assert!(start.point.distance(end.point) < 1e-13);
         assert!(start.first.distance(end.first) < 1e-12);
         assert!(start.second.distance(end.second) < 1e-11);
+    }
+
+    #[test]
+    fn a_period_of_two_steps_is_twice_smooth() {
+        let points = [DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.0, -2.0, 0.5)];
+        let curve = interpolate_closed(&points, &[0.0, 0.5, 2.0]).unwrap();
+        assert_twice_smooth(&curve, &[0.5]);
+        let (start, end) = (curve.evaluate(0.0, Side::After), curve.evaluate(2.0, Side::Before));
+        assert!(start.first.distance(end.first) < 1e-12 && start.second.distance(end.second) < 1e-11);
     }
 
     #[test]

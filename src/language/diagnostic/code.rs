@@ -137,6 +137,12 @@ codes! {
     BadWeight = "K0607";
     /// there are too few points for the degree
     FewPoints = "K0608";
+    /// a tangent has no length
+    ZeroTangent = "K0609";
+    /// a tension for which no smooth limit is proved
+    TensionRange = "K0610";
+    /// pieces of a curve do not meet
+    PiecesApart = "K0611";
 
     /// a face names a point that does not exist
     FaceIndex = "K0701";

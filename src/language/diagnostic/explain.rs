@@ -148,6 +148,15 @@ examples! {
     FewPoints: "An open B-spline needs at least one control point more than its degree.",
         "[curve.a.b-spline]\npoints = [[0, 0], [1, 1], [2, 0]]" =>
         "[curve.a.b-spline]\npoints = [[0, 0], [1, 1], [2, 0]]\ndegree = 2";
+    ZeroTangent: "A Hermite curve takes its direction at each point from the tangent there. Without a length there is no direction, and the curve would stop.",
+        "[curve.a.hermite]\npoints = [[0, 0], [1, 1]]\ntangents = [[0, 0], [1, 0]]" =>
+        "[curve.a.hermite]\npoints = [[0, 0], [1, 1]]\ntangents = [[0, 1], [1, 0]]";
+    TensionRange: "The four-point scheme is proved to have a limit with a direction everywhere for tensions between 0 and 1/8. Beyond it corners and folds appear at every scale.",
+        "[curve.a.subdivision]\nscheme = \"four-point\"\npoints = [[0, 0], [1, 1], [2, 0], [3, 1]]\ntension = 0.2" =>
+        "[curve.a.subdivision]\nscheme = \"four-point\"\npoints = [[0, 0], [1, 1], [2, 0], [3, 1]]\ntension = 0.0625";
+    PiecesApart: "Each piece of a curve begins where the one before ends. The labels show both places.",
+        "[curve.a.cubic]\ncoefficients = [[[0, 0], [1, 0], [0, 0], [0, 1]], [[1, 0], [1, 3], [0, 0], [0, 0]]]" =>
+        "[curve.a.cubic]\ncoefficients = [[[0, 0], [1, 0], [0, 0], [0, 1]], [[1, 1], [1, 3], [0, 0], [0, 0]]]";
     FaceIndex: "A face names a point that is not in the list. Indices count from 0.",
         "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[1, 2, 3]]" =>
         "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[0, 1, 2]]";

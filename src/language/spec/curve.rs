@@ -9,12 +9,16 @@ use crate::language::spec::bspline::{BSpline, Nurbs};
 use crate::language::spec::check::Check;
 use crate::language::spec::conic::{Conic, Hyperbola, Parabola, check_turn};
 use crate::language::spec::construct::{kinds, table};
+use crate::language::spec::cubic::{BetaSpline, Cubic};
 use crate::language::spec::path::Path;
 use crate::language::spec::point::{Point, Scale};
 use crate::language::spec::reader::Reader;
 use crate::language::spec::reference::CurveReference;
 use crate::language::spec::spanned::Sp;
 use crate::language::spec::spline::{Bezier, NaturalSpline, check_closed, report_repeated};
+use crate::language::spec::spline_end::{FunctionSpline, Spline};
+use crate::language::spec::subdivision_curve::SubdivisionCurve;
+use crate::language::spec::tangent::{Cardinal, CatmullRom, Hermite, KochanekBartels};
 
 kinds! {
     /// A curve of one kind.
@@ -39,12 +43,30 @@ kinds! {
         Helix(Helix) = "helix";
         /// A smooth curve through points.
         NaturalSpline(NaturalSpline) = "natural-spline";
+        /// A smooth curve through points, with a say in what it does at its ends.
+        Spline(Spline) = "spline";
+        /// The graph of a function known at some places.
+        FunctionSpline(FunctionSpline) = "function-spline";
+        /// A curve through points with given derivatives.
+        Hermite(Hermite) = "hermite";
+        /// A smooth curve through points, each piece shaped by the points near it.
+        CatmullRom(CatmullRom) = "catmull-rom";
+        /// The same, tighter or looser.
+        Cardinal(Cardinal) = "cardinal";
+        /// The same, with tension, continuity and bias.
+        KochanekBartels(KochanekBartels) = "kochanek-bartels";
         /// Bezier curves joined end to end.
         Bezier(Bezier) = "bezier";
         /// A smooth curve drawn towards its control points.
         BSpline(BSpline) = "b-spline";
         /// A B-spline whose points have weights: circles and ellipses exactly.
         Nurbs(Nurbs) = "nurbs";
+        /// A curve drawn towards its control points, shaped by bias and tension.
+        BetaSpline(BetaSpline) = "beta-spline";
+        /// Cubic pieces by any basis.
+        Cubic(Cubic) = "cubic";
+        /// A polygon whose corners are rounded again and again.
+        SubdivisionCurve(SubdivisionCurve) = "subdivision";
         /// Lines, arcs and splines joined end to end.
         Path(Path) = "path";
         /// Another curve, run through from its end to its start.

@@ -7,6 +7,7 @@ mod check;
 mod combine;
 mod conic;
 mod construct;
+mod cubic;
 mod curve;
 mod document;
 mod import;
@@ -30,6 +31,9 @@ mod section;
 mod shape;
 mod spanned;
 mod spline;
+mod spline_end;
+mod subdivision_curve;
+mod tangent;
 mod whole;
 
 pub use crate::language::suggest::closest;
@@ -38,6 +42,7 @@ pub use assertion::{Assertion, Demand, Expected};
 pub use bspline::{BSpline, KnotRule, Nurbs};
 pub use combine::{Array, Copy, Group, Mirror, Plane};
 pub use conic::{Conic, ConicForm, Hyperbola, Parabola};
+pub use cubic::{Basis, BetaSpline, Border, Cubic};
 pub use curve::{Circle, Curve, Ellipse, Helix, Line, Polyline, Reverse, Transform};
 pub use document::{Asset, Definition, Spec, Unit};
 pub use import::{FilePath, Import, Up};
@@ -57,6 +62,9 @@ pub use reference::{CurveReference, Family, MaterialName, NodeName, ShapeName, S
 pub use shape::{Shape, ShapeDefinition, ShapeOptions, Smoothing, Uv};
 pub use spanned::Sp;
 pub use spline::{Bezier, NaturalSpline, Parameters};
+pub use spline_end::{FunctionSpline, Spline, SplineEnd};
+pub use subdivision_curve::{CurveScheme, SubdivisionCurve};
+pub use tangent::{Cardinal, CatmullRom, ChordPower, EndRule, Hermite, KochanekBartels, PerPoint};
 pub use whole::schema;
 
 pub(crate) use name::check_name;

@@ -2,7 +2,7 @@
 
 use indexmap::IndexMap;
 
-use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::diagnostic::{Code, Diagnostic, Severity};
 use crate::language::source::{SourceMap, Span};
 use crate::language::spec::assertion::read_assertions;
 use crate::language::spec::check::Check;
@@ -69,8 +69,9 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
     let roots = resolve(&Names::of(table), limits.recursion, &mut reader);
     let asset = asset.flatten().unwrap_or(Asset { name: None, description: None });
     let spec = Spec { unit, up, tolerance, asset, curves, shapes, materials, nodes, roots, asserts, limits };
-    let errors = reader.diagnostics;
-    (errors.is_empty().then_some(spec), errors)
+    let found = reader.diagnostics;
+    let failed = found.iter().any(|one| one.severity == Severity::Error);
+    ((!failed).then_some(spec), found)
 }
 
 fn word<T: Read>(table: &Table, name: &str, default: T, reader: &mut Reader<'_>) -> T {
