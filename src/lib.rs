@@ -10,10 +10,11 @@
 //! | module | may use |
 //! | --- | --- |
 //! | `geometry::number` | |
+//! | `geometry::planar` | `geometry::number` |
 //! | `geometry::curve` | `geometry::number` |
-//! | `geometry::mesh` | `geometry::number` |
+//! | `geometry::mesh` | `geometry::number`, `geometry::planar` |
 //! | `geometry::surface` | `geometry::number`, `geometry::curve` |
-//! | `geometry::tessellate` | `geometry::number`, `geometry::curve`, `geometry::mesh`, `geometry::surface` |
+//! | `geometry::tessellate` | `geometry::number`, `geometry::planar`, `geometry::curve`, `geometry::mesh`, `geometry::surface` |
 //! | `import` | `geometry::number`, `geometry::mesh` |
 //! | `model` | `geometry` |
 //! | `scene` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `model` |

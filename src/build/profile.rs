@@ -5,9 +5,8 @@ use glam::DVec2;
 use super::Builder;
 use crate::geometry::curve::{AnyCurve, Curve as _};
 use crate::geometry::number::Bounds;
-use crate::geometry::tessellate::{
-    Contact, Crossing, Density, Station, discretize, encloses, first_contact, first_crossing,
-};
+use crate::geometry::planar::{Contact, Crossing, encloses, first_contact, first_crossing};
+use crate::geometry::tessellate::{Density, Station, discretize};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::CurveReference;

@@ -6,5 +6,6 @@
 pub mod curve;
 pub mod mesh;
 pub mod number;
+pub mod planar;
 pub mod surface;
 pub mod tessellate;

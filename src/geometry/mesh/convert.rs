@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 
 use crate::geometry::mesh::normals::{Smooth, corner_normals};
 use crate::geometry::mesh::polygon::{NONE, PolygonError};
-use crate::geometry::mesh::triangulate::{TriangulateError, split_quad, triangulate_in_space};
+use crate::geometry::mesh::triangulate::{split_quad, triangulate_in_space, view};
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, PolygonMesh, Run, Vertex, VertexIndex, index};
 
 /// Where normals come from.
@@ -48,8 +48,9 @@ pub struct Converted {
     pub materials: Vec<Option<u32>>,
     /// Faces that vanished because their corners stand on fewer than three positions.
     pub dropped_faces: Vec<u32>,
-    /// Faces that cross themselves, or are too bent to be seen flat, and were cut as fans: their boundary is right,
-    /// their inside may fold.
+    /// Faces whose corners all lie on one line. Their triangles stay, for the edges they share with others.
+    pub flat_faces: Vec<u32>,
+    /// Faces that cross themselves, or are too bent to be seen flat: their boundary is right, their inside may fold.
     pub crossing_faces: Vec<u32>,
 }
 
@@ -74,6 +75,7 @@ pub fn convert(source: &PolygonMesh, options: &ConvertOptions) -> Result<Convert
         }
     }
     out.dropped_faces.sort_unstable();
+    out.flat_faces.sort_unstable();
     out.crossing_faces.sort_unstable();
     out.mesh = splitter.finish();
     Ok(out)
@@ -170,6 +172,11 @@ impl<'a> Splitter<'a> {
     fn cut(&self, face: usize, out: &mut Converted) -> Vec<[u32; 3]> {
         let corners = self.source.corners_of(face);
         if corners.len() == 3 {
+            let [a, b, c] = [0, 1, 2].map(|step| self.source.position(corners.start + step));
+            // Corners on one place are told of as dropped.
+            if (b - a).cross(c - a) == DVec3::ZERO && a != b && b != c && c != a {
+                out.flat_faces.push(index(face));
+            }
             return vec![[0, 1, 2]];
         }
         let loops = self.source.loops_of(face);
@@ -188,11 +195,16 @@ impl<'a> Splitter<'a> {
             .collect();
         let slices: Vec<&[DVec3]> = rings.iter().map(Vec::as_slice).collect();
         match triangulate_in_space(&slices) {
-            Ok(triangles) => triangles,
-            Err(error) => {
-                if !matches!(error, TriangulateError::NoArea { .. }) {
-                    out.crossing_faces.push(index(face));
-                }
+            Ok((triangles, true)) => triangles,
+            Ok((triangles, false)) => {
+                let flat = view(&slices) == DVec3::ZERO;
+                let list = if flat { &mut out.flat_faces } else { &mut out.crossing_faces };
+                list.push(index(face));
+                triangles
+            }
+            // More corners than can be triangulated.
+            Err(_) => {
+                out.crossing_faces.push(index(face));
                 fans(&slices)
             }
         }

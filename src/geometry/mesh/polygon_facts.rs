@@ -6,9 +6,10 @@
 use glam::{DVec2, DVec3};
 use serde::Serialize;
 
-use crate::geometry::mesh::triangulate::{crossing, drop_axis, turn};
+use crate::geometry::mesh::triangulate::drop_axis;
 use crate::geometry::mesh::weld::weld_equal;
 use crate::geometry::mesh::{PolygonMesh, index};
+use crate::geometry::planar::{crossing, turn};
 
 /// A face is called planar when no corner is further from its plane than this part of the face's size: what
 /// decimal coordinates of six digits leave.
@@ -151,8 +152,9 @@ fn measure_face(mesh: &PolygonMesh, places: &[u32], face: usize, facts: &mut Pol
         })
         .collect();
     let slices: Vec<&[DVec2]> = rings.iter().map(Vec::as_slice).collect();
-    facts.simple &= normal != DVec3::ZERO && !repeats(mesh, places, corners) && crossing(&slices).is_none();
-    facts.convex_faces &= slices.len() == 1 && is_convex(slices[0]);
+    let simple = normal != DVec3::ZERO && !repeats(mesh, places, corners) && crossing(&slices).is_none();
+    facts.simple &= simple;
+    facts.convex_faces &= simple && slices.len() == 1 && is_convex(slices[0]);
 }
 
 /// Largest distance of the corners from their mean plane, and the size of the face.
@@ -262,7 +264,18 @@ mod tests {
         assert!(!open.closed && open.genus.is_none() && open.euler == 1);
 
         let bow_tie: &[&[u32]] = &[&[0, 1, 3, 2]];
-        assert!(!measure(&PolygonMesh::from_faces(points(&CUBE), bow_tie)).simple);
+        let facts = measure(&PolygonMesh::from_faces(points(&CUBE), bow_tie));
+        assert!(!facts.simple && !facts.convex_faces);
+        // A star that turns left at each of its tips.
+        let star = points(&[
+            [0.0, 3.0, 0.0],
+            [-2.0, -3.0, 0.0],
+            [3.0, 1.0, 0.0],
+            [-3.0, 1.0, 0.0],
+            [2.0, -3.0, 0.0],
+        ]);
+        let facts = measure(&PolygonMesh::from_faces(star, &[&[0, 1, 2, 3, 4]]));
+        assert!(!facts.simple && !facts.convex_faces);
 
         let dart = points(&[[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 4.0, 0.0]]);
         let facts = measure(&PolygonMesh::from_faces(dart, &[&[0, 1, 2, 3]]));

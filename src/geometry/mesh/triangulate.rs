@@ -1,26 +1,30 @@
-//! One polygon, with holes, into triangles: the checked adapter of the `earcut` crate.
+//! One polygon, with holes, into triangles.
 //!
-//! Promise: on success every boundary edge is the edge of exactly one triangle, no point is added or left out
-//! (collinear ones stay connected, so neighbours meet without T-junctions), no triangle is turned over, and the
-//! areas add up. Corners that touch count as one place there; of the corners on a place, triangles name the one
-//! whose edge leaves the place at the sector they lie in. Where that cannot be had, the result is an error, never a wrong triangulation. Not promised:
-//! that a polygon that winds twice around a region is noticed; ask [`crossing()`] for that.
+//! Promise: on success every edge of the polygon is the edge of exactly one triangle and all other edges have two, no
+//! point is added or left out, no triangle is turned over, and their number is corners + 2 holes - 2. So neighbours
+//! meet without T-junctions, and what was closed stays closed. Triangles without area stand where the polygon asks for
+//! them: at corners that touch or repeat, and where a corner lies on an edge. Large polygons are cut to be Delaunay as
+//! far as their edges allow, small ones to have large angles.
+//!
+//! [`triangulate`] is exact and refuses polygons whose edges cross; [`triangulate_anyway`] takes every polygon and does
+//! the least harm: edges, number and total area are right, but triangles may fold where the polygon does.
 //!
 //! Notation: a *ring* is a closed loop of points; ring 0 is the outer one, the others are holes and may run
 //! either way. A *corner* is a place in the rings, counted through all of them.
 
-mod conform;
-mod crossing;
+mod alone;
+mod bend;
+mod constrained;
+mod corners;
+mod ears;
+mod tolerant;
 
-use earcut::{Earcut, Refiner};
 use glam::{DVec2, DVec3};
-use robust::{Coord, orient2d};
 use thiserror::Error;
 
 use crate::geometry::mesh::index;
 use crate::geometry::mesh::polygon::newell;
-
-pub use crossing::crossing;
+use crate::geometry::planar::{crossing, turn, twice_area};
 
 /// Most corners of one polygon; the triangulation keeps some hundred bytes for each.
 pub const CORNER_LIMIT: usize = 8_000_000;
@@ -60,59 +64,76 @@ pub enum TriangulateError {
         /// The corners at which the two edges begin.
         edges: [u32; 2],
     },
-    /// No two edges cross, yet no triangulation was found: a hole outside the outer ring or inside another
-    /// hole, or points closer together than rounding can tell.
-    #[error("no triangulation found: a hole lies outside the polygon, or points nearly coincide")]
+    /// No two edges cross, yet the rings bound no polygon: a hole outside the outer ring or inside another hole, or a
+    /// ring that crosses itself in a corner or touches itself from outside.
+    #[error("a hole lies outside the polygon, or an outline crosses or touches itself in a corner")]
     Unsolved,
 }
 
 /// Triangles of a polygon in the plane, as corners; they turn the way the outer ring turns.
 ///
-/// Deterministic. O(n log n) on ordinary polygons, O(n^2) at worst.
+/// Deterministic. O(n log n) on ordinary polygons.
 ///
 /// # Errors
 /// See [`TriangulateError`].
 pub fn triangulate(rings: &[&[DVec2]]) -> Result<Vec<[u32; 3]>, TriangulateError> {
     let polygon = Polygon::new(rings)?;
-    if let Some(split) = polygon.quad_split() {
-        let mut split = split.map(|triangle| polygon.oriented(triangle));
-        split.sort_unstable();
-        return Ok(split.to_vec());
+    if let Some(ring) = polygon.flat_ring {
+        return Err(TriangulateError::NoArea { ring });
     }
-    let triangles = match polygon.corners.len() {
-        3 => vec![[0, 1, 2]],
-        _ => polygon.cut().ok_or_else(|| explain(rings))?,
-    };
-    Ok(triangles.into_iter().map(|triangle| polygon.oriented(triangle)).collect())
+    polygon.cut().ok_or_else(|| explain(rings))
 }
 
-/// Triangles of a nearly planar polygon in space, as corners; they turn the way the outer ring turns.
+/// Triangles of any polygon in the plane, exact where [`triangulate`] is, else with the least harm; the second says
+/// whether it was exact. Edges, number of triangles and total signed area are right in any case.
 ///
-/// The polygon is looked at along the axis nearest to its normal, so that coordinates (and with them exact
-/// collinearity) are kept as they are.
+/// Deterministic. O(n log n) on ordinary polygons; where edges cross O(n^2) at worst.
 ///
 /// # Errors
-/// See [`TriangulateError`]; a polygon that is so bent that its outline crosses itself in that view is refused.
-pub fn triangulate_in_space(rings: &[&[DVec3]]) -> Result<Vec<[u32; 3]>, TriangulateError> {
-    let normal = rings.first().map_or(DVec3::ZERO, |ring| newell(ring.iter().copied()));
+/// As [`triangulate`], but never `NoArea`, `Crossing` or `Unsolved`.
+pub fn triangulate_anyway(rings: &[&[DVec2]]) -> Result<(Vec<[u32; 3]>, bool), TriangulateError> {
+    let polygon = Polygon::new(rings)?;
+    let exact = if polygon.flat_ring.is_none() { polygon.cut() } else { None };
+    let found = exact.is_some();
+    Ok((exact.unwrap_or_else(|| polygon.oriented(polygon.least_harm())), found))
+}
+
+/// Triangles of a nearly planar polygon in space, as corners; they turn the way the outer ring turns. The second says
+/// whether no edges cross, seen along the axis nearest to the normal of the polygon: so coordinates (and with them
+/// exact collinearity) are kept as they are. See [`triangulate_anyway`].
+///
+/// # Errors
+/// As [`triangulate_anyway`].
+pub fn triangulate_in_space(rings: &[&[DVec3]]) -> Result<(Vec<[u32; 3]>, bool), TriangulateError> {
     if let Some(corner) = rings.iter().flat_map(|ring| ring.iter()).position(|point| !point.is_finite()) {
         return Err(TriangulateError::NotFinite { corner: index(corner) });
-    }
-    if normal == DVec3::ZERO && rings.first().is_some_and(|ring| ring.len() >= 3) {
-        return Err(TriangulateError::NoArea { ring: 0 });
     }
     if let [&[a, b, c, d]] = *rings
         && let Some(split) = split_quad([a, b, c, d])
     {
-        return Ok(split.to_vec());
+        return Ok((split.to_vec(), true));
     }
+    let normal = view(rings);
     let flat: Vec<Vec<DVec2>> =
         rings.iter().map(|ring| ring.iter().map(|&point| drop_axis(point, normal)).collect()).collect();
-    if hides_a_corner(rings, &flat) {
-        return Err(TriangulateError::Unsolved);
-    }
     let flat: Vec<&[DVec2]> = flat.iter().map(Vec::as_slice).collect();
-    triangulate(&flat)
+    triangulate_anyway(&flat)
+}
+
+/// The direction from which a polygon is looked at: its normal, or where its parts cancel that of its largest
+/// triangle on the first corner.
+#[must_use]
+pub fn view(rings: &[&[DVec3]]) -> DVec3 {
+    let Some(&outer) = rings.first() else { return DVec3::ZERO };
+    let normal = newell(outer.iter().copied());
+    if normal != DVec3::ZERO {
+        return normal;
+    }
+    let fan = outer.windows(2).map(|pair| (pair[0] - outer[0]).cross(pair[1] - outer[0]));
+    fan.fold(
+        DVec3::ZERO,
+        |best, next| if next.length_squared() > best.length_squared() { next } else { best },
+    )
 }
 
 /// A quadrilateral in space cut along its first diagonal, or along the other where only that keeps both halves facing
@@ -130,15 +151,6 @@ pub fn split_quad([a, b, c, d]: [DVec3; 4]) -> Option<[[u32; 3]; 2]> {
     }
 }
 
-/// Whether corners apart in space fall on one place in the view: the polygon is too bent to be seen flat.
-fn hides_a_corner(rings: &[&[DVec3]], flat: &[Vec<DVec2>]) -> bool {
-    let pairs = rings.iter().zip(flat).flat_map(|(ring, flat)| ring.iter().zip(flat));
-    // Adding zero turns -0 into 0, which the order would put apart.
-    let mut pairs: Vec<(DVec3, DVec2)> = pairs.map(|(&point, &flat)| (point, flat + DVec2::ZERO)).collect();
-    pairs.sort_by(|a, b| a.1.x.total_cmp(&b.1.x).then(a.1.y.total_cmp(&b.1.y)));
-    pairs.windows(2).any(|pair| pair[0].1 == pair[1].1 && pair[0].0 != pair[1].0)
-}
-
 /// The two coordinates across the largest component of `normal`, in the order that makes a ring that turns
 /// counter-clockwise around `normal` turn so in the plane.
 #[must_use]
@@ -154,30 +166,18 @@ pub fn drop_axis(point: DVec3, normal: DVec3) -> DVec2 {
     if along < 0.0 { DVec2::new(flat.y, flat.x) } else { flat }
 }
 
-/// Twice the area of triangle abc, positive when counter-clockwise; the sign is exact.
-pub(super) fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
-    let coord = |point: DVec2| Coord { x: point.x, y: point.y };
-    orient2d(coord(a), coord(b), coord(c))
-}
-
-/// Twice the signed area of a ring.
-fn ring_area(ring: &[DVec2]) -> f64 {
-    let Some(&origin) = ring.first() else { return 0.0 };
-    ring.windows(2).map(|pair| (pair[0] - origin).perp_dot(pair[1] - origin)).sum()
-}
-
-/// A polygon made ready: repeated neighbours left out, outer ring counter-clockwise, holes clockwise.
+/// A polygon made ready: outer ring counter-clockwise, holes clockwise.
 struct Polygon {
     /// Positions, scaled by a power of two where products could overflow.
     corners: Vec<DVec2>,
-    /// Where each hole begins in `corners`.
-    hole_starts: Vec<u32>,
+    /// One past the last corner of each ring.
+    ring_ends: Vec<u32>,
     /// For each of `corners` its number in the caller's rings.
     names: Vec<u32>,
     /// Whether the caller's outer ring runs clockwise.
     flipped: bool,
-    /// Twice the area of the polygon.
-    area: f64,
+    /// The first ring that encloses no area.
+    flat_ring: Option<u32>,
 }
 
 impl Polygon {
@@ -194,56 +194,52 @@ impl Polygon {
             return Err(TriangulateError::NotFinite { corner: index(corner) });
         }
         let scale = safe_scale(all().fold(0.0, |reach, point| f64::max(reach, point.abs().max_element())));
-        let mut polygon =
-            Self { corners: vec![], hole_starts: vec![], names: vec![], flipped: false, area: 0.0 };
-        let mut name = 0;
-        for (number, ring) in rings.iter().enumerate() {
-            polygon.push_ring(index(number), ring, (name, scale))?;
-            name += index(ring.len());
+        let mut polygon = Self {
+            corners: Vec::with_capacity(count),
+            ring_ends: Vec::with_capacity(rings.len()),
+            names: Vec::with_capacity(count),
+            flipped: false,
+            flat_ring: None,
+        };
+        for ring in rings {
+            polygon.push_ring(ring, scale)?;
         }
         Ok(polygon)
     }
 
-    fn push_ring(
-        &mut self,
-        ring: u32,
-        points: &[DVec2],
-        (name, scale): (u32, f64),
-    ) -> Result<(), TriangulateError> {
+    fn push_ring(&mut self, points: &[DVec2], scale: f64) -> Result<(), TriangulateError> {
+        let ring = index(self.ring_ends.len());
         if points.len() < 3 {
             return Err(TriangulateError::TooFewCorners { ring, corners: index(points.len()) });
         }
-        let mut kept: Vec<(u32, DVec2)> = Vec::with_capacity(points.len());
-        for (corner, &point) in points.iter().enumerate() {
-            let next = points[(corner + 1) % points.len()];
-            if point != next {
-                kept.push((name + index(corner), point * scale));
-            }
+        let start = self.corners.len();
+        self.corners.extend(points.iter().map(|point| *point * scale));
+        self.names.extend((start..self.corners.len()).map(index));
+        self.ring_ends.push(index(self.corners.len()));
+        let area = twice_area(&self.corners[start..]);
+        if area == 0.0 && self.flat_ring.is_none() {
+            self.flat_ring = Some(ring);
         }
-        let area = ring_area(&kept.iter().map(|&(_, point)| point).collect::<Vec<_>>());
-        if kept.len() < 3 || area == 0.0 {
-            return Err(TriangulateError::NoArea { ring });
-        }
-        if ring == 0 {
-            self.flipped = area < 0.0;
-        } else {
-            self.hole_starts.push(index(self.corners.len()));
-        }
+        self.flipped |= ring == 0 && area < 0.0;
         if (area < 0.0) == (ring == 0) {
-            kept.reverse();
+            self.corners[start..].reverse();
+            self.names[start..].reverse();
         }
-        self.area += if ring == 0 { area.abs() } else { -area.abs() };
-        self.names.extend(kept.iter().map(|&(name, _)| name));
-        self.corners.extend(kept.iter().map(|&(_, point)| point));
         Ok(())
+    }
+
+    /// The corners of each ring.
+    fn rings(&self) -> impl Iterator<Item = std::ops::Range<u32>> + '_ {
+        let starts = std::iter::once(0).chain(self.ring_ends.iter().copied());
+        starts.zip(self.ring_ends.iter().copied()).map(|(start, end)| start..end)
     }
 
     /// The directed edges of all rings; the polygon lies to their left.
     fn edges(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
-        let starts = std::iter::once(0).chain(self.hole_starts.iter().copied());
-        let ends = self.hole_starts.iter().copied().chain(std::iter::once(index(self.corners.len())));
-        starts.zip(ends).flat_map(|(start, end)| {
-            (start..end).map(move |corner| [corner, if corner + 1 == end { start } else { corner + 1 }])
+        self.rings().flat_map(|ring| {
+            let start = ring.start;
+            let end = ring.end;
+            ring.map(move |corner| [corner, if corner + 1 == end { start } else { corner + 1 }])
         })
     }
 
@@ -254,7 +250,7 @@ impl Polygon {
     /// A quadrilateral cut along its first diagonal, or along the other where the first lies outside: the
     /// choice that Blender and most readers make.
     fn quad_split(&self) -> Option<[[u32; 3]; 2]> {
-        if self.corners.len() != 4 || !self.hole_starts.is_empty() {
+        if self.corners.len() != 4 {
             return None;
         }
         // Counted by the caller's corners, so that the choice does not depend on the way the ring runs.
@@ -265,34 +261,53 @@ impl Polygon {
         splits.into_iter().find(|split| split.iter().all(|&triangle| self.turn(triangle) > 0.0))
     }
 
-    /// The general case: cut ears, make the result conform to the boundary, check it.
+    /// The exact way, in the caller's corners; `None` where edges cross or rings are no polygon.
     fn cut(&self) -> Option<Vec<[u32; 3]>> {
-        let data: Vec<[f64; 2]> = self.corners.iter().map(|point| point.to_array()).collect();
-        let mut flat: Vec<u32> = Vec::new();
-        Earcut::new().earcut_slice(&data, &self.hole_starts, &mut flat);
-        let mut triangles: Vec<[u32; 3]> = flat.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
-        if triangles.iter().map(|&triangle| self.turn(triangle)).sum::<f64>() < 0.0 {
-            triangles.iter_mut().for_each(|triangle| triangle.reverse());
+        if self.corners.len() == 3 {
+            return Some(vec![[0, 1, 2]]);
         }
-        let conforming = conform::conform(self, triangles)?;
-        Some(self.refine(&data, conforming))
+        if let Some(split) = self.quad_split() {
+            let mut split = self.oriented(split.to_vec());
+            split.sort_unstable();
+            return Some(split);
+        }
+        ears::cut(self).or_else(|| constrained::triangulate(self)).map(|triangles| self.oriented(triangles))
     }
 
-    /// Turns diagonals towards Delaunay where that keeps the triangulation right: fewer slivers.
-    fn refine(&self, data: &[[f64; 2]], triangles: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
-        if conform::has_touching_corners(self) {
-            return triangles;
+    /// Of two ways to cut a polygon whose edges cross, the one that turns triangles over by less.
+    fn least_harm(&self) -> Vec<[u32; 3]> {
+        let bent = if self.flat_ring.is_none() { constrained::triangulate_bent(self) } else { None };
+        let harm = |triangles: &[[u32; 3]]| {
+            triangles.iter().map(|triangle| self.turned_over(*triangle)).fold(0.0, f64::max)
+        };
+        let Some(bent) = bent else { return tolerant::cut(self) };
+        let least = harm(&bent);
+        if least == 0.0 {
+            return bent;
         }
-        let mut flat: Vec<u32> = triangles.iter().flatten().copied().collect();
-        Refiner::new().refine(&mut flat, data);
-        let refined = flat.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
-        conform::conform(self, refined).unwrap_or(triangles)
+        let cut = tolerant::cut(self);
+        if harm(&cut) < least { cut } else { bent }
     }
 
-    /// A triangle in the caller's corners and the caller's sense.
-    fn oriented(&self, triangle: [u32; 3]) -> [u32; 3] {
-        let [a, b, c] = triangle.map(|corner| self.names[corner as usize]);
-        if self.flipped { [a, c, b] } else { [a, b, c] }
+    /// How wide a triangle is that is turned over; 0 for others.
+    fn turned_over(&self, triangle: [u32; 3]) -> f64 {
+        let area = self.turn(triangle);
+        if area >= 0.0 {
+            return 0.0;
+        }
+        let [a, b, c] = triangle.map(|corner| self.corners[corner as usize]);
+        -area / a.distance(b).max(b.distance(c)).max(c.distance(a))
+    }
+
+    /// Triangles in the caller's corners and the caller's sense, the least corner of each first.
+    fn oriented(&self, triangles: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
+        let turned = |triangle: [u32; 3]| {
+            let [a, b, c] = triangle.map(|corner| self.names[corner as usize]);
+            let turned = if self.flipped { [a, c, b] } else { [a, b, c] };
+            let least = (0..3).min_by_key(|&k| turned[k]).unwrap_or(0);
+            [turned[least], turned[(least + 1) % 3], turned[(least + 2) % 3]]
+        };
+        triangles.into_iter().map(turned).collect()
     }
 }
 
@@ -304,7 +319,7 @@ fn explain(rings: &[&[DVec2]]) -> TriangulateError {
 /// A power of two that brings coordinates of size `reach` to where their products neither overflow nor vanish;
 /// 1 for ordinary sizes, so that ordinary coordinates are used as they are.
 fn safe_scale(reach: f64) -> f64 {
-    if (1e-70..=1e70).contains(&reach) || reach == 0.0 {
+    if (1e-30..=1e50).contains(&reach) || reach == 0.0 {
         return 1.0;
     }
     let exponent = (reach.to_bits() >> 52) & 0x7ff;

@@ -14,4 +14,4 @@ pub use elementary::{
     acos, asin, asinh, atan, atan2, cbrt, cos, cosh, exp, hypot, ln, pow, sin, sin_cos, sinh, tan, tanh,
 };
 pub use tolerance::{Bounds, single_rounding};
-pub use whole::{floor_count, floor_index, floor_large, single, size};
+pub use whole::{count_of, floor_count, floor_index, floor_large, single, size};

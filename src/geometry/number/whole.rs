@@ -34,6 +34,15 @@ pub fn size(count: u64) -> usize {
     usize::try_from(count).unwrap_or(usize::MAX)
 }
 
+/// A subscript as a 32-bit index.
+///
+/// # Panics
+/// When there are 2^32 things or more; limits refuse so many long before they exist.
+#[must_use]
+pub fn count_of(subscript: usize) -> u32 {
+    u32::try_from(subscript).expect("limits keep every count below 2^32")
+}
+
 #[cfg(test)]
 mod tests {
     use super::{floor_count, floor_index, single};

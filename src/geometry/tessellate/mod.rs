@@ -7,7 +7,6 @@
 //! Not promised: that the result does not cross itself where the surface does.
 
 mod cap;
-mod crossing;
 mod cuboid;
 mod discretize;
 mod extrude;
@@ -21,7 +20,6 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 
-pub use crossing::{Contact, Crossing, encloses, first_contact, first_crossing};
 pub use cuboid::cuboid;
 pub use discretize::{Density, Station, arc_lengths, discretize};
 pub use extrude::{Extrusion, extrude};
