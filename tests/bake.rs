@@ -8,6 +8,7 @@ mod document;
 mod glb;
 mod hostile;
 mod mutation;
+mod patches;
 mod primitives;
 mod refusals;
 mod shading;

@@ -12,6 +12,7 @@ mod material;
 mod node;
 mod primitive;
 mod profile;
+mod ruled;
 mod shape;
 mod spline;
 

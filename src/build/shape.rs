@@ -96,6 +96,8 @@ impl Builder<'_> {
             }
             Kind::Extrude(extrude) => self.extrusion(extrude).map(here),
             Kind::Sweep(sweep) => self.sweep(sweep).map(here),
+            Kind::Ruled(ruled) => self.ruled(ruled).map(here),
+            Kind::Translational(moved) => self.translational(moved).map(here),
             Kind::Mesh(mesh) => self.mesh(mesh, span).map(here),
             Kind::Import(import) => self.import(import, span).map(here),
             Kind::Copy(copy) => {

@@ -102,6 +102,7 @@ fn of_shape(name: &str, model: &Model, sample: &Sample) -> Result<Value, String>
         Recipe::Sweep(sweep) => {
             Box::new(SweptSurface::new(sweep.profile.clone(), sweep.path.clone(), sweep.twist))
         }
+        Recipe::Patches(patches) if patches.surfaces.len() == 1 => Box::new(patches.surfaces[0].clone()),
         _ => return Err(format!("shape `{name}` has no surface with parameters u and v")),
     };
     let (domain_u, domain_v) = (surface.domain_u(), surface.domain_v());

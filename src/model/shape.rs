@@ -4,7 +4,7 @@ use glam::{DAffine3, DVec2, DVec3};
 
 use super::MaterialHandle;
 use crate::geometry::mesh::PolygonMesh;
-use crate::geometry::tessellate::{Extrusion, FlatPlane, Geodesic, Revolution, RoundedBox, Sweep};
+use crate::geometry::tessellate::{Extrusion, FlatPlane, Geodesic, Patchwork, Revolution, RoundedBox, Sweep};
 
 /// Index of a shape in its model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -43,6 +43,8 @@ pub enum Recipe {
     Extrusion(Extrusion),
     /// A section carried along a path.
     Sweep(Sweep),
+    /// Surfaces by their parameters, alone or joined, with flat ends.
+    Patches(Patchwork),
     /// Polygons, written out or imported. For each of their materials the model's, if it has one.
     Polygons {
         /// The polygons.

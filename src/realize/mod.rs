@@ -5,6 +5,7 @@
 //! closed; the report measures that.
 
 mod limit;
+mod nearest;
 mod node;
 mod shape;
 mod source;

@@ -10,8 +10,8 @@ use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
 use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex};
 use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::{
-    Detail, Deviation, SurfaceDensity, TessellateError, Tessellation, cuboid, extrude, geodesic, plane,
-    revolve, rounded_box, sweep,
+    Detail, Deviation, SurfaceDensity, TessellateError, Tessellation, cuboid, extrude, geodesic, patchwork,
+    plane, revolve, rounded_box, sweep,
 };
 use crate::model::{Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing, UvMode};
 
@@ -147,6 +147,7 @@ impl<'a> Maker<'a> {
             Recipe::Revolution(revolution) => revolve(revolution, &detail),
             Recipe::Extrusion(extrusion) => extrude(extrusion, &detail),
             Recipe::Sweep(path) => sweep(path, &detail),
+            Recipe::Patches(patches) => patchwork(patches, &detail),
             Recipe::Polygons { mesh, materials } => {
                 return self.finished(shape, self.polygons(shape, mesh, materials)?);
             }

@@ -2,11 +2,12 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::nearest::Field;
 use super::shape::frame_map;
 use crate::geometry::curve::{AnyCurve, Curve as _, Side, nearest_within};
 use crate::geometry::mesh;
 use crate::geometry::number::{Bounds, hypot};
-use crate::geometry::surface::{Surface as _, SweptSurface};
+use crate::geometry::surface::{AnySurface, Surface as _, SweptSurface};
 use crate::geometry::tessellate::{Density, RoundedBox, discretize};
 use crate::model::{Model, Recipe, ShapeHandle};
 
@@ -17,6 +18,7 @@ pub(super) fn source_count(recipe: &Recipe) -> u32 {
         Recipe::Revolution(_) | Recipe::Sweep(_) => 3,
         Recipe::Extrusion(extrusion) => mesh::index(extrusion.outlines.len()) + 2,
         Recipe::Polygons { .. } | Recipe::RoundedBox(_) | Recipe::Geodesic(_) | Recipe::Plane(_) => 1,
+        Recipe::Patches(patches) => mesh::index(patches.surfaces.len() + patches.caps.len()),
         Recipe::Assembly(_) => 0,
     }
 }
@@ -38,6 +40,7 @@ enum Kind {
     Revolved(AnyCurve),
     Extruded(AnyCurve),
     Swept(Box<SweptSurface>),
+    Patch(Field),
 }
 
 /// All surfaces of a shape, by the source of an anchor.
@@ -92,6 +95,10 @@ fn collect(model: &Model, handle: ShapeHandle, outer: &DAffine3, all: &mut Vec<S
             push(Kind::Swept(Box::new(surface)));
             push(Kind::Exact);
             push(Kind::Exact);
+        }
+        Recipe::Patches(patches) => {
+            patches.surfaces.iter().for_each(|surface| push(Kind::Patch(Field::new(surface))));
+            patches.caps.iter().for_each(|_| push(Kind::Exact));
         }
         Recipe::Assembly(parts) => {
             for (part, inner) in parts {
@@ -180,6 +187,7 @@ impl Source {
                 distance_near(outline, flat, window.u)
             }
             Kind::Swept(surface) => swept_distance(surface, local, window),
+            Kind::Patch(surface) => surface.distance(local, window),
         };
         away * super::shape::stretch(&self.map.matrix3)
     }
@@ -327,6 +335,7 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
             let reach = DVec3::splat(profile.reach());
             Bounds { min: path.min - reach, max: path.max + reach }
         }
+        Recipe::Patches(patches) => patches.surfaces.iter().map(lattice).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Assembly(_) => Bounds::EMPTY,
     }
 }
@@ -336,4 +345,13 @@ fn along(curve: &AnyCurve) -> Bounds {
     let domain = curve.domain();
     let ends = [curve.point(domain.start), curve.evaluate(domain.end, Side::Before).point];
     Bounds::of_points(stations.iter().map(|station| station.point).chain(ends))
+}
+
+/// The box of a lattice of points of a surface.
+fn lattice(surface: &AnySurface) -> Bounds {
+    const STEPS: u32 = 16;
+    let (u, v) = (surface.domain_u(), surface.domain_v());
+    let part = |k: u32| f64::from(k) / f64::from(STEPS);
+    let places = (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |j| (u.at(part(i)), v.at(part(j)))));
+    Bounds::of_points(places.map(|(u, v)| surface.evaluate(u, v).point))
 }

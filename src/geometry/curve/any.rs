@@ -4,8 +4,9 @@ use glam::DVec3;
 
 use super::{
     BezierSpline, Curve, Domain, EllipseArc, FourPointCurve, Helix, HyperbolaArc, Jet, Path, Polyline,
-    RationalSpline, Reversed, Side, Transformed,
+    RationalSpline, Retimed, Reversed, Side, Transformed,
 };
+use crate::geometry::number::Bounds;
 
 /// A curve of any kind.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +31,8 @@ pub enum AnyCurve {
     Transformed(Transformed),
     /// A curve backwards.
     Reversed(Reversed),
+    /// A curve run through at other times.
+    Retimed(Retimed),
 }
 
 macro_rules! each_kind {
@@ -45,6 +48,7 @@ macro_rules! each_kind {
             AnyCurve::Path($curve) => $body,
             AnyCurve::Transformed($curve) => $body,
             AnyCurve::Reversed($curve) => $body,
+            AnyCurve::Retimed($curve) => $body,
         }
     };
 }
@@ -80,5 +84,13 @@ impl Curve for AnyCurve {
 
     fn chord_deviation(&self, from: f64, to: f64) -> f64 {
         each_kind!(self, curve => curve.chord_deviation(from, to))
+    }
+
+    fn second_range(&self, from: f64, to: f64) -> Option<Bounds> {
+        each_kind!(self, curve => curve.second_range(from, to))
+    }
+
+    fn first_range(&self, from: f64, to: f64) -> Option<Bounds> {
+        each_kind!(self, curve => curve.first_range(from, to))
     }
 }

@@ -11,6 +11,7 @@ use thiserror::Error;
 use super::control::{self, hodograph, jet, stops, with_part};
 use super::pieces::{Pieces, direction_within, turns};
 use super::{Curve, Domain, Jet, Side};
+use crate::geometry::number::Bounds;
 
 /// Why control points do not make a Bezier spline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -167,6 +168,17 @@ impl BezierSpline {
     fn piece_deviation(&self, index: usize, from: f64, to: f64) -> f64 {
         with_part(self.piece(index), (from, to), deviation_of_control_polygon)
     }
+
+    /// The hull of the second derivative over a part of one piece: its control points are the second
+    /// differences of those of the piece.
+    fn second_hull(&self, index: usize, from: f64, to: f64) -> Bounds {
+        if self.degree < 2 {
+            return Bounds::of_points([DVec3::ZERO]);
+        }
+        let second = hodograph(&hodograph(self.piece(index)));
+        let rate = 1.0 / (self.pieces.span(index) * self.pieces.span(index));
+        with_part(&second, (from, to), |part| Bounds::of_points(part.iter().map(|point| *point * rate)))
+    }
 }
 
 impl Curve for BezierSpline {
@@ -210,6 +222,14 @@ impl Curve for BezierSpline {
             if at_end { ways.rev().collect() } else { ways.collect() }
         };
         direction_within(&self.local_jet(index, local), local, side, leading).unwrap_or(DVec3::X)
+    }
+
+    fn second_range(&self, from: f64, to: f64) -> Option<Bounds> {
+        let pieces = &self.pieces;
+        let (first, last) = (pieces.locate(from, Side::After), pieces.locate(to, Side::Before));
+        let hull = |index: usize| self.second_hull(index, pieces.local(index, from), pieces.local(index, to));
+        let hulls = (first..=last.max(first)).map(hull);
+        Some(hulls.fold(Bounds::EMPTY, Bounds::union))
     }
 }
 

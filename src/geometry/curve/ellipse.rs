@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::{Curve, Domain, Jet, Side};
 use crate::geometry::number;
+use crate::geometry::number::Bounds;
 
 /// The arc center + x cos t + y sin t for t from `from` to `to` in degrees. `x` and `y` are conjugate half
 /// diameters: perpendicular and of equal length they make a circle.
@@ -123,6 +124,19 @@ impl Curve for EllipseArc {
         let (sin, cos) = number::sin_cos_degrees(middle);
         let (spoke, tangent) = (self.x * cos + self.y * sin, self.y * cos - self.x * sin);
         chord_height(spoke, tangent, drop, number::tan_degrees(turn / 2.0)).min(reach * drop)
+    }
+
+    fn second_range(&self, from: f64, to: f64) -> Option<Bounds> {
+        let middle = self.evaluate((from + to) / 2.0, Side::After).second;
+        let rate = (self.to - self.from).to_radians();
+        // The third derivative has the size of the half diameters in each direction.
+        let third = DVec3::new(
+            number::hypot(self.x.x, self.y.x),
+            number::hypot(self.x.y, self.y.y),
+            number::hypot(self.x.z, self.y.z),
+        );
+        let reach = third * (rate * rate * rate * (to - from) / 2.0).abs();
+        Some(Bounds { min: middle - reach, max: middle + reach })
     }
 }
 

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::{Curve, Domain, Jet, Side};
 use crate::geometry::number;
+use crate::geometry::number::Bounds;
 
 /// A helix that starts at (radius, 0, 0), turns about +y (right-handed) and climbs `pitch` a turn, while the
 /// radius goes evenly to `end_radius`. The parameter counts turns.
@@ -53,5 +54,14 @@ impl Curve for Helix {
         let radius = self.radius.max(self.end_radius);
         let second = number::hypot(2.0 * growth * TURN, radius * TURN * TURN);
         second * (to - from) * (to - from) / 8.0
+    }
+
+    fn second_range(&self, from: f64, to: f64) -> Option<Bounds> {
+        let middle = self.evaluate((from + to) / 2.0, Side::After).second;
+        let growth = (self.end_radius - self.radius) / self.turns;
+        let radius = self.radius.max(self.end_radius);
+        let third = number::hypot(3.0 * growth * TURN * TURN, radius * TURN * TURN * TURN);
+        let reach = DVec3::new(third, 0.0, third) * ((to - from).abs() / 2.0);
+        Some(Bounds { min: middle - reach, max: middle + reach })
     }
 }

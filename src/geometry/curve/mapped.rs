@@ -3,6 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::{AnyCurve, Curve, Domain, Jet, Side};
+use crate::geometry::number::Bounds;
 
 /// A curve under an affine map, with the same parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,6 +69,14 @@ impl Curve for Transformed {
 
     fn chord_deviation(&self, from: f64, to: f64) -> f64 {
         self.curve.chord_deviation(from, to) * self.stretch
+    }
+
+    fn second_range(&self, from: f64, to: f64) -> Option<Bounds> {
+        let range = self.curve.second_range(from, to)?;
+        let middle = self.map.transform_vector3(range.center());
+        let half = (range.max - range.min) / 2.0;
+        let reach = self.map.matrix3.abs() * half;
+        Some(Bounds { min: middle - reach, max: middle + reach })
     }
 }
 
@@ -142,5 +151,9 @@ impl Curve for Reversed {
 
     fn chord_deviation(&self, from: f64, to: f64) -> f64 {
         self.curve.chord_deviation(self.mirrored(to), self.mirrored(from))
+    }
+
+    fn second_range(&self, from: f64, to: f64) -> Option<Bounds> {
+        self.curve.second_range(self.mirrored(to), self.mirrored(from))
     }
 }

@@ -23,6 +23,7 @@ mod path;
 mod pieces;
 mod polyline;
 mod rational;
+mod retimed;
 mod spline;
 mod spline_ends;
 mod subdivision;
@@ -43,12 +44,15 @@ pub use nearest::{distance_within, nearest_within};
 pub use path::{Continuity, Path, classify};
 pub use polyline::Polyline;
 pub use rational::{RationalError, RationalSpline};
+pub use retimed::{Retimed, jumps};
 pub use spline::{Parametrization, SplineError, interpolate, interpolate_closed, parameters};
 pub use spline_ends::{SplineEnd, interpolate_with};
 pub use subdivision::{Border, Scheme, chaikin_limit, fewest, refine, three_point_limit};
 pub use windows::{beta_spline, windows};
 
 use glam::DVec3;
+
+use crate::geometry::number::Bounds;
 
 /// The parameter interval of a curve, `start` < `end`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,6 +141,21 @@ pub trait Curve: Send + Sync {
     /// stands for: every point of the chord is that close to the curve and every point of the curve that
     /// close to the chord. No joint may lie strictly between. Zero means straight.
     fn chord_deviation(&self, from: f64, to: f64) -> f64;
+
+    /// A box that holds the second derivative everywhere between two parameters, for proofs; none where no
+    /// bound is known. No joint may lie strictly between, and no break where the speed jumps.
+    fn second_range(&self, _from: f64, _to: f64) -> Option<Bounds> {
+        None
+    }
+
+    /// The same for the first derivative.
+    fn first_range(&self, from: f64, to: f64) -> Option<Bounds> {
+        let half = (to - from) / 2.0;
+        let reach = self.second_range(from, to)?;
+        let reach = reach.min.abs().max(reach.max.abs()) * half;
+        let middle = self.evaluate(from + half, Side::After).first;
+        Some(Bounds { min: middle - reach, max: middle + reach })
+    }
 
     /// Position at `t`.
     fn point(&self, t: f64) -> DVec3 {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{AnyCurve, Curve, Domain, Jet, Side};
-use crate::geometry::number::floor_index;
+use crate::geometry::number::{Bounds, floor_index};
 
 /// How well two curves join.
 ///
@@ -202,5 +202,20 @@ impl Curve for Path {
             previous = distance;
         }
         deviation
+    }
+
+    fn second_range(&self, from: f64, to: f64) -> Option<Bounds> {
+        let ((first, start), (last, end)) = (self.locate(from, Side::After), self.locate(to, Side::Before));
+        let mut range = Bounds::EMPTY;
+        for index in first..=last.max(first) {
+            let curve = &self.curves[index];
+            let domain = curve.domain();
+            let start = if index == first { start } else { domain.start };
+            let end = if index == last { end } else { domain.end };
+            let part = curve.second_range(start, end)?;
+            let rate = domain.span() * domain.span();
+            range = range.union(Bounds { min: part.min * rate, max: part.max * rate });
+        }
+        Some(range)
     }
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Curve, Domain, Jet, Side};
-use crate::geometry::number::floor_index;
+use crate::geometry::number::{Bounds, floor_index};
 
 /// Straight segments; segment k covers parameters k to k + 1. A closed one returns to its first point.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,5 +64,9 @@ impl Curve for Polyline {
 
     fn chord_deviation(&self, _from: f64, _to: f64) -> f64 {
         0.0
+    }
+
+    fn second_range(&self, _from: f64, _to: f64) -> Option<Bounds> {
+        Some(Bounds { min: DVec3::ZERO, max: DVec3::ZERO })
     }
 }

@@ -4,19 +4,28 @@
 //! its normal is the unit cross product of the tangents, or at a pole the limit. Not promised: that the
 //! surface does not cross itself.
 
+mod any;
 mod extruded;
 mod frame;
+mod limit;
 mod revolved;
+mod ruled;
+mod second;
 mod swept;
+mod translational;
 
+pub use any::AnySurface;
 pub use extruded::ExtrudedSurface;
 pub use frame::{Frame, FrameField};
 pub use revolved::RevolvedSurface;
+pub use ruled::RuledSurface;
+pub use second::{SecondJet, SecondRange};
 pub use swept::{Section, SweptSurface};
+pub use translational::TranslationalSurface;
 
 use glam::DVec3;
 
-use super::curve::Domain;
+use super::curve::{Domain, Side};
 
 /// Point and first derivatives of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,4 +50,33 @@ pub trait Surface: Send + Sync {
 
     /// Point, tangents and normal; parameters outside the domain are taken as the nearer end.
     fn evaluate(&self, u: f64, v: f64) -> SurfaceJet;
+
+    /// The same from one side in each parameter: they differ where the surface has an edge or a seam.
+    fn sided(&self, u: (f64, Side), v: (f64, Side)) -> SurfaceJet {
+        let _ = (u.1, v.1);
+        self.evaluate(u.0, v.0)
+    }
+
+    /// Second derivatives from one side in each parameter. Where a surface knows no better, differences of its
+    /// tangents, good to about five digits.
+    fn second(&self, u: (f64, Side), v: (f64, Side)) -> SecondJet {
+        second::by_differences(self, u, v)
+    }
+
+    /// Boxes that hold the second derivatives everywhere on a rectangle of parameters, for proofs; none where no
+    /// bound is known. No joint may cross the inside of the rectangle.
+    fn second_range(&self, _u: (f64, f64), _v: (f64, f64)) -> Option<SecondRange> {
+        None
+    }
+
+    /// Values of u strictly inside the domain, increasing, where tangents may jump: lines of u = constant that a
+    /// mesh must keep as edges.
+    fn joints_u(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// The same for v.
+    fn joints_v(&self) -> Vec<f64> {
+        Vec::new()
+    }
 }

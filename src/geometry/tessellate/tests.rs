@@ -55,7 +55,7 @@ fn details() -> Vec<Detail> {
     densities.into_iter().flat_map(both).collect()
 }
 
-fn volume(made: &Tessellation) -> f64 {
+pub(super) fn volume(made: &Tessellation) -> f64 {
     let mesh = &made.mesh;
     let point = |vertex: &crate::geometry::mesh::VertexIndex| {
         mesh.points[mesh.vertices[vertex.subscript()].point.subscript()]
@@ -64,7 +64,7 @@ fn volume(made: &Tessellation) -> f64 {
     six.sum::<f64>() / 6.0
 }
 
-fn check(name: &str, made: &Tessellation, detail: &Detail, closed: bool) {
+pub(super) fn check(name: &str, made: &Tessellation, detail: &Detail, closed: bool) {
     let mesh = &made.mesh;
     let corner = |corner: usize| mesh.vertices[mesh.triangles[corner / 3][corner % 3].subscript()].point.0;
     let topology = measure(mesh.triangles.len(), mesh.points.len(), corner).unwrap();

@@ -172,6 +172,12 @@ codes! {
     /// positions cannot be stored as exactly as the tolerance asks
     BeyondPrecision = "K0811";
 
+    /// an open and a closed curve cannot be joined
+    OpenAndClosed = "K0820";
+    /// curves that a surface should lie between are the same
+    Coincident = "K0821";
+    /// an end cannot be closed by a flat face
+    NoFlatEnd = "K0822";
     /// a measure of a shape does not fit its other measures
     DoesNotFit = "K0830";
 

@@ -195,6 +195,15 @@ examples! {
     BeyondPrecision: "A glTF file holds positions in single precision: about seven digits. Far from the origin, or where the tolerance is very fine, rounding alone moves points by more than half the tolerance. Model near the origin and let a node carry the shape to its place, or write a coarser tolerance.",
         "tolerance = 0.001\n[shape.a.sphere]\nradius = 1\ncenter = [30000, 0, 0]" =>
         "tolerance = 0.001\n[shape.a.sphere]\nradius = 1\n[node.n]\nshape = \"a\"\nat = [30000, 0, 0]";
+    OpenAndClosed: "A surface between curves joins point to point. Where one of them comes back to its start and the other does not, the surface would have a slit that nobody asked for.",
+        "[shape.a.ruled]\nfrom = { circle = { radius = 1 } }\nto = { polyline = { points = [[0, 0, 1], [1, 0, 1], [1, 1, 1]] } }" =>
+        "[shape.a.ruled]\nfrom = { circle = { radius = 1 } }\nto = { polyline = { points = [[0, 0, 1], [1, 0, 1], [1, 1, 1]], closed = true } }";
+    Coincident: "A surface lies between two curves, or between a curve and a point. Where they are the same line in space there is nothing between them.",
+        "[curve.c.circle]\nradius = 1\n[shape.a.ruled]\nfrom = \"c\"\nto = \"c\"" =>
+        "[curve.c.circle]\nradius = 1\n[shape.a.ruled]\nfrom = \"c\"\nto = { transform = { of = \"c\", at = [0, 0, 1] } }";
+    NoFlatEnd: "Solids between closed curves end in flat faces, so these curves must be flat and enclose an area. Leave the faces out with `caps = false`, or close the end with a shape of its own.",
+        "[shape.a.ruled]\nfrom = { polyline = { points = [[0, 0], [1, 0, 1], [1, 1], [0, 1, 1]], closed = true } }\nto = [0, 0, 4]" =>
+        "[shape.a.ruled]\nfrom = { polyline = { points = [[0, 0], [1, 0, 1], [1, 1], [0, 1, 1]], closed = true } }\nto = [0, 0, 4]\ncaps = false";
     DoesNotFit: "Each measure of a shape is right by itself, but they do not go together: a rounding wider than its box, a hole wider than its tube.",
         "[shape.a.box]\nsize = [4, 1, 4]\nradius = 0.6" => "[shape.a.box]\nsize = [4, 1, 4]\nradius = 0.4";
     ImportFailed: "A file is damaged or cut off. The message names its line and value. Export it again.",

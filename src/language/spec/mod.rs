@@ -25,6 +25,7 @@ mod profile;
 mod reader;
 mod reference;
 mod resolve;
+mod ruled;
 mod scalar;
 mod schema;
 mod section;
@@ -59,6 +60,7 @@ pub use primitive::{
 };
 pub use profile::{Extrude, Frame, Revolve, Sweep};
 pub use reference::{CurveReference, Family, MaterialName, NodeName, ShapeName, ShapeReference};
+pub use ruled::{End, Ruled, Translational};
 pub use shape::{Shape, ShapeDefinition, ShapeOptions, Smoothing, Uv};
 pub use spanned::Sp;
 pub use spline::{Bezier, NaturalSpline, Parameters};

@@ -66,6 +66,8 @@ const CHAPTERS: [(&str, &str, &[&str]); 5] = [
             "revolve",
             "extrude",
             "sweep",
+            "ruled",
+            "translational",
             "mesh",
             "import",
             "copy",

@@ -16,6 +16,7 @@ use crate::language::spec::primitive::{
 use crate::language::spec::profile::{Extrude, Revolve, Sweep};
 use crate::language::spec::reader::{Fields, Read, Reader};
 use crate::language::spec::reference::MaterialName;
+use crate::language::spec::ruled::{Ruled, Translational};
 use crate::language::spec::schema::Schemas;
 use crate::language::spec::spanned::Sp;
 use crate::language::value::Value;
@@ -111,6 +112,10 @@ kinds! {
         Extrude(Extrude) = "extrude";
         /// A profile drawn along a curve.
         Sweep(Sweep) = "sweep";
+        /// Straight lines between two curves.
+        Ruled(Ruled) = "ruled";
+        /// A curve moved along another.
+        Translational(Translational) = "translational";
         /// Points and faces, written out.
         Mesh(Mesh) = "mesh";
         /// A model from a file.

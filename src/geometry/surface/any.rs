@@ -1,0 +1,56 @@
+//! One type for every kind of surface that is tessellated by its parameters.
+
+use super::{RuledSurface, SecondJet, SecondRange, Surface, SurfaceJet, TranslationalSurface};
+use crate::geometry::curve::{Domain, Side};
+
+/// A surface of any kind.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AnySurface {
+    /// Straight lines between two curves.
+    Ruled(Box<RuledSurface>),
+    /// One curve moved along another.
+    Translational(Box<TranslationalSurface>),
+}
+
+macro_rules! each_kind {
+    ($self:ident, $surface:ident => $body:expr) => {
+        match $self {
+            AnySurface::Ruled($surface) => $body,
+            AnySurface::Translational($surface) => $body,
+        }
+    };
+}
+
+impl Surface for AnySurface {
+    fn domain_u(&self) -> Domain {
+        each_kind!(self, surface => surface.domain_u())
+    }
+
+    fn domain_v(&self) -> Domain {
+        each_kind!(self, surface => surface.domain_v())
+    }
+
+    fn evaluate(&self, u: f64, v: f64) -> SurfaceJet {
+        each_kind!(self, surface => surface.evaluate(u, v))
+    }
+
+    fn sided(&self, u: (f64, Side), v: (f64, Side)) -> SurfaceJet {
+        each_kind!(self, surface => surface.sided(u, v))
+    }
+
+    fn second(&self, u: (f64, Side), v: (f64, Side)) -> SecondJet {
+        each_kind!(self, surface => surface.second(u, v))
+    }
+
+    fn second_range(&self, u: (f64, f64), v: (f64, f64)) -> Option<SecondRange> {
+        each_kind!(self, surface => surface.second_range(u, v))
+    }
+
+    fn joints_u(&self) -> Vec<f64> {
+        each_kind!(self, surface => surface.joints_u())
+    }
+
+    fn joints_v(&self) -> Vec<f64> {
+        each_kind!(self, surface => surface.joints_v())
+    }
+}

@@ -1,0 +1,146 @@
+//! The nearest point of a surface near known parameters.
+
+use glam::DVec3;
+
+use super::Window;
+use crate::geometry::curve::{Domain, Side};
+use crate::geometry::surface::{AnySurface, Surface, SurfaceJet};
+
+/// A surface with what the search for its nearest points needs to know of it.
+#[derive(Clone, Debug)]
+pub(super) struct Field {
+    surface: Box<AnySurface>,
+    u: Domain,
+    v: Domain,
+    /// Whether opposite rims of u, and of v, are one line.
+    closed: (bool, bool),
+}
+
+/// Corners on both sides of a seam: those after it count from the end of the domain on.
+fn unwrapped(values: [f64; 3], domain: Domain, closed: bool) -> [f64; 3] {
+    let low = values.into_iter().fold(f64::INFINITY, f64::min);
+    let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let half = domain.span() / 2.0;
+    if !closed || high - low <= half {
+        return values;
+    }
+    values.map(|value| if value < domain.start + half { value + domain.span() } else { value })
+}
+
+fn wrap(value: f64, domain: Domain) -> f64 {
+    if value > domain.end { value - domain.span() } else { value }
+}
+
+impl Field {
+    pub(super) fn new(surface: &AnySurface) -> Self {
+        let (u, v) = (surface.domain_u(), surface.domain_v());
+        let mut field = Self { surface: Box::new(surface.clone()), u, v, closed: (false, false) };
+        field.closed = field.find_closed();
+        field
+    }
+
+    /// Distance from a point to the nearest point found on the surface around the parameters of a triangle. Never
+    /// less than the distance to the whole surface.
+    pub(super) fn distance(&self, point: DVec3, window: &Window) -> f64 {
+        let corners_u = unwrapped(window.u, self.u, self.closed.0);
+        let corners_v = unwrapped(window.v, self.v, self.closed.1);
+        let middle = |values: [f64; 3]| values.iter().sum::<f64>() / 3.0;
+        // The middle leads there but for triangles across an edge of the surface.
+        let starts = [
+            (middle(corners_u), middle(corners_v)),
+            (corners_u[0], corners_v[0]),
+            (corners_u[1], corners_v[1]),
+            (corners_u[2], corners_v[2]),
+        ];
+        let mut best = f64::INFINITY;
+        for (u, v) in starts {
+            let (u, v) = (wrap(u, self.u), wrap(v, self.v));
+            best = best.min(self.descend(point, u, v));
+            for (u, v) in self.across_seams(u, v) {
+                best = best.min(self.descend(point, u, v));
+            }
+        }
+        best
+    }
+
+    fn jet(&self, u: f64, v: f64) -> SurfaceJet {
+        let side = |t: f64, end: f64| if t >= end { Side::Before } else { Side::After };
+        self.surface.sided((u, side(u, self.u.end)), (v, side(v, self.v.end)))
+    }
+
+    fn find_closed(&self) -> (bool, bool) {
+        const PLACES: [f64; 3] = [0.2, 0.5, 0.9];
+        let same = |a: DVec3, b: DVec3, size: f64| a.distance(b) <= 1e-9 * size;
+        let corner = self.jet(self.u.start, self.v.start).point;
+        let size = PLACES.map(|part| self.jet(self.u.at(part), self.v.at(part)).point.distance(corner));
+        let size = size.into_iter().fold(0.0, f64::max);
+        let around_u = PLACES.iter().all(|part| {
+            let v = self.v.at(*part);
+            same(self.jet(self.u.start, v).point, self.jet(self.u.end, v).point, size)
+        });
+        let around_v = PLACES.iter().all(|part| {
+            let u = self.u.at(*part);
+            same(self.jet(u, self.v.start).point, self.jet(u, self.v.end).point, size)
+        });
+        (around_u, around_v)
+    }
+
+    /// Starts at the other side of a seam, for places near it.
+    fn across_seams(&self, u: f64, v: f64) -> Vec<(f64, f64)> {
+        /// Share of the domain that is near.
+        const NEAR: f64 = 0.02;
+        let mut starts = Vec::new();
+        let across = |value: f64, domain: Domain| {
+            let margin = NEAR * domain.span();
+            if value <= domain.start + margin {
+                Some(domain.end)
+            } else if value >= domain.end - margin {
+                Some(domain.start)
+            } else {
+                None
+            }
+        };
+        if let Some(u) = across(u, self.u).filter(|_| self.closed.0) {
+            starts.push((u, v));
+        }
+        if let Some(v) = across(v, self.v).filter(|_| self.closed.1) {
+            starts.push((u, v));
+        }
+        starts
+    }
+
+    /// Gauss and Newton's method, inside the domain: on a rim the other parameter goes its own way.
+    fn descend(&self, point: DVec3, mut u: f64, mut v: f64) -> f64 {
+        let mut best = f64::INFINITY;
+        let clamp = |value: f64, domain: Domain| value.clamp(domain.start, domain.end);
+        for _ in 0..12 {
+            let jet = self.jet(u, v);
+            let away = point - jet.point;
+            let found = away.length();
+            if found >= best * (1.0 - 1e-9) {
+                return best.min(found);
+            }
+            best = found;
+            let (a, b, c) = (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());
+            let (x, y) = (away.dot(jet.du), away.dot(jet.dv));
+            let determinant = a * c - b * b;
+            if determinant <= 1e-18 * a * c {
+                // At a pole only one parameter moves the point.
+                if a >= c && a > 0.0 {
+                    u = clamp(u + x / a, self.u);
+                } else if c > 0.0 {
+                    v = clamp(v + y / c, self.v);
+                }
+                continue;
+            }
+            let next = (u + (x * c - y * b) / determinant, v + (y * a - x * b) / determinant);
+            let inside = (clamp(next.0, self.u), clamp(next.1, self.v));
+            (u, v) = match (inside.0 == next.0, inside.1 == next.1) {
+                (true, false) => (clamp(u + (x - b * (inside.1 - v)) / a, self.u), inside.1),
+                (false, true) => (inside.0, clamp(v + (y - b * (inside.0 - u)) / c, self.v)),
+                _ => inside,
+            };
+        }
+        best
+    }
+}
