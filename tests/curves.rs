@@ -280,3 +280,97 @@ fn every_kind_of_case_is_held() {
         assert!(held.iter().any(|kind| case["kind"] == *kind), "{}", case["kind"]);
     }
 }
+
+/// Kinds that are determined by their points, with fields that leave affine maps alone, and whether the curve stays
+/// in the hull of its points.
+const AFFINE: [(&str, &str, bool); 15] = [
+    ("natural-spline", "parameters = \"uniform\"", false),
+    ("spline", "parameters = \"nielsen\"\nends = \"not-a-knot\"", false),
+    ("spline", "parameters = \"nielsen\"\nclosed = true", false),
+    ("catmull-rom", "alpha = 0", false),
+    ("cardinal", "tension = 0.3\nclosed = true", false),
+    ("kochanek-bartels", "tension = 0.3\ncontinuity = -0.2\nbias = 0.5", false),
+    ("bezier", "degree = 5", true),
+    ("bezier", "degree = 5\nweights = [1, 2, 0.5, 3, 1, 1]", true),
+    ("b-spline", "", true),
+    ("b-spline", "degree = 4\nclosed = true", true),
+    ("nurbs", "weights = [1, 2, 0.5, 3, 1, 1]", true),
+    ("beta-spline", "bias = 2\ntension = 5\nends = \"cut\"", true),
+    ("subdivision", "scheme = \"chaikin\"", true),
+    ("subdivision", "scheme = \"three-point\"\nclosed = true", true),
+    ("subdivision", "scheme = \"four-point\"", false),
+];
+
+const POLYGON: [DVec3; 6] = [
+    DVec3::new(0.0, 0.0, 0.0),
+    DVec3::new(2.0, -0.5, 1.0),
+    DVec3::new(3.0, 1.0, 0.0),
+    DVec3::new(2.2, 2.5, 0.5),
+    DVec3::new(0.7, 2.2, 2.0),
+    DVec3::new(-0.6, 1.4, 0.0),
+];
+
+fn through(kind: &str, points: &[DVec3], lines: &str) -> AnyCurve {
+    let points: Vec<[f64; 3]> = points.iter().map(|point| point.to_array()).collect();
+    curve(kind, &format!("points = {points:?}\n{lines}"))
+}
+
+#[test]
+fn the_curve_of_mapped_points_is_the_mapped_curve() {
+    let map = glam::DAffine3 {
+        matrix3: glam::DMat3::from_cols(
+            DVec3::new(3.0, 0.2, 0.0),
+            DVec3::new(-0.7, 0.5, 0.1),
+            DVec3::new(0.3, 0.0, 2.0),
+        ),
+        translation: DVec3::new(1.0, -2.0, 0.5),
+    };
+    let images = POLYGON.map(|point| map.transform_point3(point));
+    for (kind, lines, _) in AFFINE {
+        let (own, mapped) = (through(kind, &POLYGON, lines), through(kind, &images, lines));
+        for k in 0..=200 {
+            let share = f64::from(k) / 200.0;
+            let (point, image) = (own.point(own.domain().at(share)), mapped.point(mapped.domain().at(share)));
+            assert!(map.transform_point3(point).distance(image) < 1e-11, "{kind} {lines} at {share}");
+        }
+    }
+}
+
+#[test]
+fn curves_stay_in_the_hull_of_their_points() {
+    // In every direction the curve reaches no further than the farthest point.
+    let directions = (0..500).map(|k| {
+        let (turn, rise) = (f64::from(k) * 2.399_963, f64::from(k) / 250.0 - 1.0);
+        let (sin, cos) = kiln::geometry::number::sin_cos(turn);
+        DVec3::new(cos * (1.0 - rise * rise).sqrt(), sin * (1.0 - rise * rise).sqrt(), rise)
+    });
+    let directions: Vec<DVec3> = directions.collect();
+    for (kind, lines, inside) in AFFINE {
+        let own = through(kind, &POLYGON, lines);
+        let points: Vec<DVec3> =
+            (0..=300).map(|k| own.point(own.domain().at(f64::from(k) / 300.0))).collect();
+        let reach = |points: &[DVec3], way: DVec3| points.iter().map(|p| p.dot(way)).fold(f64::MIN, f64::max);
+        let beyond = directions.iter().any(|way| reach(&points, *way) > reach(&POLYGON, *way) + 1e-12);
+        assert_eq!(beyond, !inside, "{kind} {lines}");
+    }
+}
+
+/// A projective map of homogeneous points maps a rational curve; a polynomial one is not mapped so.
+#[test]
+fn rational_curves_are_projectively_invariant_and_polynomial_ones_are_not() {
+    let weigh = |p: DVec3| 1.0 + 0.2 * p.x + 0.1 * p.y + 0.05 * p.z;
+    let image = |p: DVec3| p / weigh(p);
+    let images = POLYGON.map(image);
+    let weights = POLYGON.map(weigh);
+    let plain = through("b-spline", &POLYGON, "");
+    let rational = through("nurbs", &images, &format!("weights = {weights:?}"));
+    let polynomial = through("b-spline", &images, "");
+    let mut apart = 0.0_f64;
+    for k in 0..=100 {
+        let share = f64::from(k) / 100.0;
+        let expected = image(plain.point(plain.domain().at(share)));
+        assert!(rational.point(rational.domain().at(share)).distance(expected) < 1e-13);
+        apart = apart.max(polynomial.point(polynomial.domain().at(share)).distance(expected));
+    }
+    assert!(apart > 0.01, "{apart}");
+}

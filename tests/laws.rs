@@ -112,6 +112,9 @@ mixed.path = { start = [0, 0], segments = [
   { line = [[1, 0], [2, 1], [2, 2]] }, { arc = { through = [1.5, 3], to = [1, 2.5] } },
   { natural-spline = [[0, 2], [-1, 1], [-1, 0.5]] }, { quadratic = [[-1, 0], [-0.5, 0]] },
   { bezier = [[0, -1], [1, -1], [1, 0], [2, 2], [3, 1], [3, -1]] }, { arc = { center = [3, -2], angle = -77 } } ] }
+drawn.path = { start = [0, 0], segments = [
+  { catmull-rom = [[1, 0], [2, 1], [2, 2]] }, { b-spline = [[2, 3], [1, 3], [0, 2], [0, 4]] }, { b-spline = [[1, 5], [2, 5]] },
+  { b-spline = [[3, 5]] } ] }
 rounded.path = { start = [1, 0], closed = true, segments = [
   { line = [[3, 0]] }, { arc = { center = [3, 1], angle = 90 } }, { line = [[4, 2]] },
   { arc = { center = [3, 2], angle = 90 } }, { line = [[2.3, 3], [1.7, 3], [1, 3]] } ] }

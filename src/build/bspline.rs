@@ -1,6 +1,6 @@
 //! B-splines, NURBS and rational Bezier curves of a document into curves of the kernel.
 
-use glam::DVec4;
+use glam::{DVec3, DVec4};
 
 use super::Builder;
 use super::curve::positions;
@@ -16,13 +16,24 @@ impl Builder<'_> {
         let degree = spline.degree.value as usize;
         let points = positions(&spline.points);
         match with_knots(degree, points, spline.closed.value, spline.knots.as_ref()) {
-            Ok(spline) => {
-                let (points, breaks) = spline.to_bezier();
-                match BezierSpline::with_knots(degree, points, breaks) {
-                    Ok(curve) => Some(AnyCurve::Bezier(curve)),
-                    Err(error) => self.degenerate(&error.to_string(), span),
-                }
-            }
+            Ok(spline) => self.pieces(&spline, span),
+            Err(error) => self.degenerate(&error.to_string(), span),
+        }
+    }
+
+    /// From the first to the last point, cubic where there are points enough.
+    pub(super) fn clamped_b_spline(&mut self, points: Vec<DVec3>, span: Span) -> Option<AnyCurve> {
+        let degree = points.len().saturating_sub(1).min(3);
+        match with_knots(degree, points, false, None) {
+            Ok(spline) => self.pieces(&spline, span),
+            Err(error) => self.degenerate(&error.to_string(), span),
+        }
+    }
+
+    fn pieces(&mut self, spline: &BSpline<DVec3>, span: Span) -> Option<AnyCurve> {
+        let (points, breaks) = spline.to_bezier();
+        match BezierSpline::with_knots(spline.knots().degree(), points, breaks) {
+            Ok(curve) => Some(AnyCurve::Bezier(curve)),
             Err(error) => self.degenerate(&error.to_string(), span),
         }
     }

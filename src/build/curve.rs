@@ -10,7 +10,7 @@ use crate::geometry::curve::{
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{
-    Arc, ArcSegment, Bezier, Curve, CurveReference, Joint, NaturalSpline, Point, Segment, Sp,
+    Arc, ArcSegment, Bezier, Curve, CurveReference, EndRule, Joint, NaturalSpline, Point, Segment, Sp,
 };
 
 pub(super) fn positions(points: &[Sp<Point>]) -> Vec<DVec3> {
@@ -161,6 +161,11 @@ impl Builder<'_> {
         };
         match segment {
             Segment::Line(points) => Polyline::new(with_start(points), false).map(AnyCurve::Polyline),
+            Segment::CatmullRom(points) => {
+                let ends = (false, EndRule::Natural);
+                self.catmull_rom_through(&with_start(points), 0.5, ends, span)
+            }
+            Segment::BSpline(points) => self.clamped_b_spline(with_start(points), span),
             Segment::NaturalSpline(points) => {
                 let points = with_start(points);
                 match parameters(&points, false, Parametrization::Chordal) {

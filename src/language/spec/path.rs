@@ -38,6 +38,11 @@ kinds! {
         Line(Vec<Sp<Point>>) = "line";
         /// A natural spline through the current point and these.
         NaturalSpline(Vec<Sp<Point>>) = "natural-spline";
+        /// A centripetal Catmull-Rom spline through the current point and these.
+        CatmullRom(Vec<Sp<Point>>) = "catmull-rom";
+        /// A cubic B-spline (of a lower degree with less than 3 points) from the current point, drawn towards these, to the
+        /// last of them.
+        BSpline(Vec<Sp<Point>>) = "b-spline";
         /// Cubic Bezier curves: for each, two control points and the end.
         Bezier(Vec<Sp<Point>>) = "bezier";
         /// Quadratic Bezier curves: for each, a control point and the end.
@@ -136,6 +141,8 @@ impl Segment {
         match self {
             Self::Line(points)
             | Self::NaturalSpline(points)
+            | Self::CatmullRom(points)
+            | Self::BSpline(points)
             | Self::Bezier(points)
             | Self::Quadratic(points) => points.iter().collect(),
             Self::Arc(ArcSegment::Through { through, to }) => vec![through, to],
@@ -154,7 +161,10 @@ impl Segment {
 
     fn check_points(&self, span: Span, reader: &mut Reader<'_>) -> bool {
         let (count, multiple) = match self {
-            Self::Line(points) | Self::NaturalSpline(points) => (points.len(), 1),
+            Self::Line(points)
+            | Self::NaturalSpline(points)
+            | Self::CatmullRom(points)
+            | Self::BSpline(points) => (points.len(), 1),
             Self::Bezier(points) => (points.len(), 3),
             Self::Quadratic(points) => (points.len(), 2),
             Self::Arc(_) => return true,
@@ -211,7 +221,13 @@ impl Path {
 
 fn check_step(current: Option<Sp<Point>>, segment: &Sp<Segment>, reader: &mut Reader<'_>) -> bool {
     match (&segment.value, current) {
-        (Segment::Line(points) | Segment::NaturalSpline(points), _) => {
+        (
+            Segment::Line(points)
+            | Segment::NaturalSpline(points)
+            | Segment::CatmullRom(points)
+            | Segment::BSpline(points),
+            _,
+        ) => {
             let first =
                 points.first().zip(current).is_some_and(|(first, now)| first.position == now.position);
             if first {
