@@ -1,14 +1,21 @@
 //! Leaves out vertices and points that no triangle uses, and triangles that use one vertex twice.
 
 use crate::geometry::mesh;
-use crate::geometry::mesh::{Mesh, PointIndex, VertexIndex};
+use crate::geometry::mesh::{Mesh, PointIndex, Vertex, VertexIndex};
 
 /// Renumbers what is used, in the order it stands. O(size of the mesh); nothing moves when all is used.
 pub(super) fn compact(mesh: &mut Mesh) {
-    drop_collapsed(mesh);
     let mut vertex_used = vec![false; mesh.vertices.len()];
+    let mut collapsed = false;
     for triangle in &mesh.triangles {
-        triangle.iter().for_each(|vertex| vertex_used[vertex.0 as usize] = true);
+        if is_collapsed(&mesh.vertices, triangle) {
+            collapsed = true;
+        } else {
+            triangle.iter().for_each(|vertex| vertex_used[vertex.0 as usize] = true);
+        }
+    }
+    if collapsed {
+        drop_collapsed(mesh);
     }
     if vertex_used.iter().any(|used| !used) {
         let places = renumber(&vertex_used);
@@ -42,15 +49,14 @@ fn renumber(used: &[bool]) -> Vec<u32> {
 }
 
 /// A triangle with two corners on one point has no area and both its other edges cancel.
+fn is_collapsed(vertices: &[Vertex], [a, b, c]: &[VertexIndex; 3]) -> bool {
+    let [a, b, c] = [a, b, c].map(|vertex| vertices[vertex.0 as usize].point);
+    a == b || b == c || c == a
+}
+
 fn drop_collapsed(mesh: &mut Mesh) {
-    let point = |vertex: VertexIndex| mesh.vertices[vertex.0 as usize].point;
-    let collapsed = |[a, b, c]: &[VertexIndex; 3]| {
-        point(*a) == point(*b) || point(*b) == point(*c) || point(*c) == point(*a)
-    };
-    if !mesh.triangles.iter().any(collapsed) {
-        return;
-    }
-    let keep: Vec<bool> = mesh.triangles.iter().map(|triangle| !collapsed(triangle)).collect();
+    let keep: Vec<bool> =
+        mesh.triangles.iter().map(|triangle| !is_collapsed(&mesh.vertices, triangle)).collect();
     let mut kept_before = 0;
     let mut start = 0;
     let mut runs = Vec::with_capacity(mesh.runs.len());
