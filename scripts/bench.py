@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Sets Kiln beside its peers on the same work in one run: whole processes, medians, quality beside speed.
 
-    scripts/bench.py                  vase and sweep on a fixed grid, the vase within 0.1 mm, peak memory
-    scripts/bench.py --only vase      one part: vase, sweep, tolerance or memory
+    scripts/bench.py                  vase and sweep on a fixed grid, the vase within 0.1 mm, peak memory,
+                                      evaluation of curves, every spec of the gallery
+    scripts/bench.py --only vase      one part: vase, sweep, tolerance, memory, curves or gallery
     scripts/bench.py --large          memory up to an output of 1 GB
     scripts/bench.py --json FILE      the figures as JSON too
     scripts/bench.py --readme         also renews the tables between the markers in README.md
@@ -25,7 +26,7 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-from peers import models, specs
+from peers import evaluation, gallery, models, specs
 from peers.process import Runs, together
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -34,7 +35,7 @@ PYTHON = ROOT / ".venv" / "bin" / "python"
 CAD_PYTHON = ROOT / ".venv-peers" / "bin" / "python"
 KILN = Path(os.environ.get("KILN_BIN", ROOT / "target" / "release" / "kiln"))
 MARKERS = ("<!-- bench:begin -->", "<!-- bench:end -->")
-PARTS = ("vase", "sweep", "tolerance", "memory")
+PARTS = ("vase", "sweep", "tolerance", "memory", "curves", "gallery")
 
 TOLERANCE = 1e-4  # meters: a tenth of a millimeter on a vase of two meters
 # CadQuery's own tolerance is steered until its measured deviation is Kiln's; its angle is set out of the way.
@@ -83,6 +84,11 @@ def measure(part: str, folder: Path, options: argparse.Namespace) -> Part:
     """The figures of one part."""
     if part == "memory":
         return memory(folder, [*MEMORY_STEPS, *([LARGE_STEP] if options.large else [])])
+    if part == "curves":
+        peer = [str(PYTHON), str(PEERS / "peer_curves.py")]
+        return evaluation.measure(KILN, peer, folder, options.runs, tell)
+    if part == "gallery":
+        return gallery.measure(KILN, ROOT / "specs", folder, options.runs, tell)
     return tolerance(folder) if part == "tolerance" else grid(part, folder, options.runs)
 
 
@@ -218,6 +224,10 @@ def tables(figures: dict[str, Any]) -> str:
         blocks.append(tolerance_table(figures["tolerance"]["rows"]))
     if "memory" in figures:
         blocks.append(memory_table(figures["memory"]["rows"]))
+    if "curves" in figures:
+        blocks.append(curves_table(figures["curves"]["rows"]))
+    if "gallery" in figures:
+        blocks.append(gallery_table(figures["gallery"]["rows"]))
     return "\n\n".join(blocks)
 
 
@@ -265,6 +275,38 @@ def memory_table(rows: list[dict[str, Any]]) -> str:
          ratio(row.get("times-bytes"))]
         for row in rows
     ]  # fmt: skip
+    return markdown(head, body)
+
+
+def curves_table(rows: list[dict[str, Any]]) -> str:
+    """Evaluation by curve."""
+    head = [
+        "point and first derivative",
+        "Kiln, ns",
+        "scipy or numpy, ns",
+        "times Kiln",
+        "geomdl, ns",
+        "times Kiln",
+    ]
+    body = [
+        [
+            row["curve"], ratio(row["kiln"]), ratio(row["scipy"]), ratio(row["scipy-times-kiln"]),
+            count(row["geomdl"]), ratio(row["geomdl-times-kiln"]),
+        ]
+        for row in rows
+    ]  # fmt: skip
+    return f"**curves** ({count(evaluation.POINTS)} points each)\n\n{markdown(head, body)}"
+
+
+def gallery_table(rows: list[dict[str, Any]]) -> str:
+    """Each spec of the gallery, the slowest first."""
+    head = ["gallery, two jobs", "ms", "peak MB", "files", "bytes"]
+    body = [
+        [row["asset"], thousandths(row["seconds"]), millions(row["peak"]), count(row["files"]), count(row["bytes"])]
+        if row["failure"] is None
+        else [row["asset"], "failed", *["-"] * (len(head) - 2)]
+        for row in rows
+    ]
     return markdown(head, body)
 
 

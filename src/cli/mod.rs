@@ -12,6 +12,7 @@ mod project;
 mod sample;
 mod sample_curve;
 mod starter;
+mod timed;
 mod told;
 
 use std::process::ExitCode;

@@ -8,6 +8,7 @@ use super::arguments::Sample;
 use super::output::Printer;
 use super::project::{reason, task};
 use super::sample_curve::describe;
+use super::timed;
 use crate::compile::{self, Options};
 use crate::geometry::curve::{Curve, Domain};
 use crate::geometry::surface::{ExtrudedSurface, RevolvedSurface, Surface, SweptSurface};
@@ -64,6 +65,9 @@ fn of_curve(
     sample: &Sample,
 ) -> Result<Value, String> {
     let curve = curve.ok_or_else(|| format!("there is no curve `{name}`"))?;
+    if sample.time {
+        return Ok(timed::of_curve(name, curve, sample.count));
+    }
     let domain = curve.domain();
     let places = if sample.at.is_empty() {
         (0..=sample.count).map(|k| domain.at(f64::from(k) / f64::from(sample.count))).collect()

@@ -223,3 +223,15 @@ def test_every_invalid_document_of_the_toml_corpus_is_refused(kiln: Kiln, cases:
     assert done.returncode in (1, 3)
     assert "panicked" not in said
     assert [name for name in names if name not in said] == []
+
+
+def test_sample_times_a_curve_and_nothing_else(kiln: Kiln) -> None:
+    kiln.write("[curve.ring.circle]\nradius = 1\n" + BOX)
+    timed = kiln.run("sample", "model.toml", "--curve", "ring", "--count", "999", "--time")
+    found = json.loads(timed.stdout)
+    assert found.keys() == {"curve", "points", "nanoseconds"}
+    assert found["points"] == 1000
+    assert found["nanoseconds"] > 0
+    for more in (["--at", "0.5"], ["--shape", "s"]):
+        assert kiln.run("sample", "model.toml", "--curve", "ring", "--time", *more).returncode == 2
+    assert kiln.run("sample", "model.toml", "--shape", "s", "--time").returncode == 2
