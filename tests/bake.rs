@@ -13,6 +13,7 @@ mod primitives;
 mod refusals;
 mod shading;
 mod shapes;
+mod sweeps;
 
 use kiln::compile::{Compiled, Options};
 use kiln::language::Document;

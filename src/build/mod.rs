@@ -6,6 +6,7 @@
 
 mod bspline;
 mod conic;
+mod carry;
 mod curve;
 mod import;
 mod material;

@@ -163,13 +163,9 @@ impl Builder<'_> {
         let path = self.curve_of(&sweep.path);
         let (profile, path) = (profile?, path?);
         self.check_path(&path, sweep.path.span())?;
+        let carry = self.carry(sweep, &path)?;
         self.check_bends(&profile.stations, &path, sweep.path.span());
-        Some(Recipe::Sweep(Sweep {
-            profile: profile.curve,
-            path,
-            twist: sweep.twist.value,
-            caps: sweep.caps.value,
-        }))
+        Some(Recipe::Sweep(Sweep { profile: profile.curve, path, carry, caps: sweep.caps.value }))
     }
 
     /// A path must not turn back: there the section would have no plane to stand in.

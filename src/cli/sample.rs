@@ -10,8 +10,8 @@ use super::project::{reason, task};
 use super::sample_curve::describe;
 use super::timed;
 use crate::compile::{self, Options};
-use crate::geometry::curve::{Curve, Domain};
-use crate::geometry::surface::{ExtrudedSurface, RevolvedSurface, Surface, SweptSurface};
+use crate::geometry::curve::{Curve, Domain, Side};
+use crate::geometry::surface::{ExtrudedSurface, FrameField, RevolvedSurface, Surface, SweptSurface};
 use crate::model::{Model, Recipe};
 
 pub(crate) fn run(sample: &Sample, printer: &Printer) -> Outcome {
@@ -92,34 +92,23 @@ fn of_shape(name: &str, model: &Model, sample: &Sample) -> Result<Value, String>
         let known: Vec<&str> = model.shapes.iter().map(|shape| shape.name.as_str()).collect();
         format!("there is no shape `{name}`; there is: {}", known.join(", "))
     })?;
-    let surface: Box<dyn Surface> = match &shape.recipe {
-        Recipe::Revolution(revolution) => Box::new(RevolvedSurface {
-            profile: revolution.profile.clone(),
-            start: revolution.start,
-            angle: revolution.angle,
-        }),
-        Recipe::Extrusion(extrusion) => Box::new(ExtrudedSurface {
-            profile: extrusion.outlines[0].clone(),
-            bottom: extrusion.bottom,
-            height: extrusion.height,
-        }),
-        Recipe::Sweep(sweep) => {
-            Box::new(SweptSurface::new(sweep.profile.clone(), sweep.path.clone(), sweep.twist))
-        }
-        Recipe::Patches(patches) if patches.surfaces.len() == 1 => Box::new(patches.surfaces[0].clone()),
-        _ => return Err(format!("shape `{name}` has no surface with parameters u and v")),
-    };
+    let (surface, frames) = surface(&shape.recipe)
+        .ok_or_else(|| format!("shape `{name}` has no surface with parameters u and v"))?;
     let (domain_u, domain_v) = (surface.domain_u(), surface.domain_v());
     let places = surface_places(sample, domain_u, domain_v)?;
     let points: Vec<Value> = places
         .iter()
         .map(|(u, v)| {
             let jet = surface.evaluate(*u, *v);
-            json!({
+            let mut place = json!({
                 "u": u, "v": v,
                 "point": numbers(jet.point), "du": numbers(jet.du), "dv": numbers(jet.dv),
                 "normal": numbers(jet.normal),
-            })
+            });
+            if let Some(frames) = &frames {
+                place["frame"] = frame(frames, *v, domain_v);
+            }
+            place
         })
         .collect();
     Ok(json!({
@@ -128,6 +117,42 @@ fn of_shape(name: &str, model: &Model, sample: &Sample) -> Result<Value, String>
         "domain-v": [domain_v.start, domain_v.end],
         "samples": points,
     }))
+}
+
+/// The first surface of a recipe, and the frames that carry it if it has any.
+fn surface(recipe: &Recipe) -> Option<(Box<dyn Surface>, Option<FrameField>)> {
+    match recipe {
+        Recipe::Revolution(revolution) => {
+            let surface = RevolvedSurface {
+                profile: revolution.profile.clone(),
+                start: revolution.start,
+                angle: revolution.angle,
+            };
+            Some((Box::new(surface), None))
+        }
+        Recipe::Extrusion(extrusion) => {
+            let surface = ExtrudedSurface {
+                profile: extrusion.outlines[0].clone(),
+                bottom: extrusion.bottom,
+                height: extrusion.height,
+            };
+            Some((Box::new(surface), None))
+        }
+        Recipe::Sweep(sweep) => {
+            let surface = SweptSurface::new(sweep.profile.clone(), sweep.path.clone(), &sweep.carry);
+            let frames = surface.frames.clone();
+            Some((Box::new(surface), Some(frames)))
+        }
+        Recipe::Patches(patches) if patches.surfaces.len() == 1 => {
+            Some((Box::new(patches.surfaces[0].clone()), None))
+        }
+        _ => None,
+    }
+}
+
+fn frame(frames: &FrameField, v: f64, domain: Domain) -> Value {
+    let frame = frames.at(v, if v >= domain.end { Side::Before } else { Side::After });
+    json!({ "side": numbers(frame.side), "up": numbers(frame.up), "along": numbers(frame.along) })
 }
 
 fn surface_places(sample: &Sample, u: Domain, v: Domain) -> Result<Vec<(f64, f64)>, String> {

@@ -91,7 +91,7 @@ fn collect(model: &Model, handle: ShapeHandle, outer: &DAffine3, all: &mut Vec<S
             push(Kind::Exact);
         }
         Recipe::Sweep(sweep) => {
-            let surface = SweptSurface::new(sweep.profile.clone(), sweep.path.clone(), sweep.twist);
+            let surface = SweptSurface::new(sweep.profile.clone(), sweep.path.clone(), &sweep.carry);
             push(Kind::Swept(Box::new(surface)));
             push(Kind::Exact);
             push(Kind::Exact);

@@ -16,7 +16,7 @@ mod translational;
 
 pub use any::AnySurface;
 pub use extruded::ExtrudedSurface;
-pub use frame::{Frame, FrameField};
+pub use frame::{Carry, Frame, FrameField, FrameRule};
 pub use revolved::RevolvedSurface;
 pub use ruled::RuledSurface;
 pub use second::{SecondJet, SecondRange};

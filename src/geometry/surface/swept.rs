@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Frame, FrameField, Surface, SurfaceJet};
+use super::{Carry, Frame, FrameField, Surface, SurfaceJet};
 use crate::geometry::curve::{AnyCurve, Curve, Domain, Side};
 
 /// A section (x along the frame's side, y along its up) carried along a path. u is the section's parameter,
@@ -60,10 +60,10 @@ impl Section {
 }
 
 impl SweptSurface {
-    /// The surface of `profile` along `path`, turning by `twist` degrees from start to end.
+    /// The surface of `profile` along `path`.
     #[must_use]
-    pub fn new(profile: AnyCurve, path: AnyCurve, twist: f64) -> Self {
-        let frames = FrameField::new(&path, twist);
+    pub fn new(profile: AnyCurve, path: AnyCurve, carry: &Carry) -> Self {
+        let frames = FrameField::new(&path, carry, reach(&profile));
         Self { profile, path, frames }
     }
 
@@ -79,9 +79,17 @@ impl SweptSurface {
             frame,
             curvature: across / square,
             speed: square.sqrt(),
-            twist: self.frames.twist_rate(),
+            twist: self.frames.turn_rate(v, side),
         }
     }
+}
+
+/// About how far a section reaches from its path, metres.
+fn reach(profile: &AnyCurve) -> f64 {
+    const SAMPLES: u32 = 64;
+    let domain = profile.domain();
+    let samples = (0..=SAMPLES).map(|k| domain.at(f64::from(k) / f64::from(SAMPLES)));
+    samples.chain(profile.joints()).map(|t| profile.point(t).length()).fold(0.0, f64::max)
 }
 
 impl Surface for SweptSurface {

@@ -15,17 +15,17 @@ use crate::geometry::curve::{AnyCurve, Curve, Domain, Jet, Side};
 use crate::geometry::mesh;
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
 use crate::geometry::number::{ln, pow};
-use crate::geometry::surface::{Section, SweptSurface};
+use crate::geometry::surface::{Carry, Section, SweptSurface};
 
-/// A section carried along a path by rotation-minimizing frames.
+/// A section carried along a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
     /// The section, x along the frame's side, y along its up.
     pub profile: AnyCurve,
     /// The path.
     pub path: AnyCurve,
-    /// Turn from start to end, degrees.
-    pub twist: f64,
+    /// How the section is carried.
+    pub carry: Carry,
     /// Whether the ends of an open path are closed by flat faces, where the section is closed.
     pub caps: bool,
 }
@@ -54,7 +54,7 @@ pub fn sweep(shape: &Sweep, detail: &Detail) -> Result<Tessellation, TessellateE
     if let SurfaceDensity::Grid { u, v } = detail.density {
         detail.allow(2 * u64::from(u) * u64::from(v))?;
     }
-    let surface = SweptSurface::new(shape.profile.clone(), shape.path.clone(), shape.twist);
+    let surface = SweptSurface::new(shape.profile.clone(), shape.path.clone(), &shape.carry);
     let SurfaceDensity::Tolerance(tolerance) = detail.density else {
         return Plan::new(shape, &surface, detail, 0.0)?.build(shape, detail);
     };
@@ -104,12 +104,15 @@ impl Curve for Traced<'_> {
     }
 
     fn joints(&self) -> Vec<f64> {
-        self.surface.path.joints()
+        let mut joints = self.surface.path.joints();
+        joints.extend(self.surface.frames.joints());
+        joints.sort_by(f64::total_cmp);
+        joints
     }
 
     fn chord_deviation(&self, from: f64, to: f64) -> f64 {
         let path = &self.surface.path;
-        if self.surface.frames.twist_rate() == 0.0 && path.chord_deviation(from, to) == 0.0 {
+        if straight(self.surface, from, to) {
             return 0.0;
         }
         let (start, end) = (self.surface.section(from, Side::After), self.surface.section(to, Side::Before));
@@ -170,7 +173,7 @@ fn section_stations(
     density: Density,
     limit: u64,
 ) -> Result<Vec<Station>, TessellateError> {
-    let rate = surface.frames.twist_rate().abs();
+    let rate = surface.frames.greatest_turn_rate();
     if rate == 0.0 {
         return discretize(&shape.profile, density, limit);
     }
@@ -180,6 +183,12 @@ fn section_stations(
         stations[index - 1].deviation = shape.profile.chord_deviation(from, to);
     }
     Ok(stations)
+}
+
+/// Whether the section goes straight on between two parameters, without a turn.
+fn straight(surface: &SweptSurface, from: f64, to: f64) -> bool {
+    surface.path.chord_deviation(from, to) == 0.0
+        && (surface.frames.steady() || surface.frames.turn_between(from, to).abs() < 1e-9)
 }
 
 /// Distance of a point from the line of a chord.
@@ -264,7 +273,7 @@ impl Plan {
         let mut e2 = 0.0_f64;
         for row in 0..self.path.len() - 1 {
             let (from, to) = (self.path[row].t, self.path[row + 1].t);
-            if surface.frames.twist_rate() == 0.0 && surface.path.chord_deviation(from, to) == 0.0 {
+            if straight(surface, from, to) {
                 continue;
             }
             let middle = surface.section((from + to) / 2.0, Side::After);

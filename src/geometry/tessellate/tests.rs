@@ -11,6 +11,7 @@ use crate::geometry::curve::{
 };
 use crate::geometry::mesh::topology::measure;
 use crate::geometry::number::{cos_degrees, sin_degrees};
+use crate::geometry::surface::Carry;
 
 fn polyline(points: &[(f64, f64)], closed: bool) -> AnyCurve {
     let points = points.iter().map(|(x, y)| DVec3::new(*x, *y, 0.0)).collect();
@@ -203,7 +204,8 @@ fn sweeps_keep_the_laws() {
         for (path_name, path, _) in &paths {
             for twist in [0.0, 90.0] {
                 for detail in details() {
-                    let shape = Sweep { profile: profile.clone(), path: path.clone(), twist, caps: true };
+                    let carry = Carry { twist, ..Carry::PLAIN };
+                    let shape = Sweep { profile: profile.clone(), path: path.clone(), carry, caps: true };
                     if twist != 0.0 && matches!(*path_name, "knot" | "frame") {
                         continue;
                     }

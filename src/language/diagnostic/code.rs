@@ -171,6 +171,8 @@ codes! {
     BadMesh = "K0810";
     /// positions cannot be stored as exactly as the tolerance asks
     BeyondPrecision = "K0811";
+    /// a path runs along the direction that is to be up
+    AlongUp = "K0812";
 
     /// an open and a closed curve cannot be joined
     OpenAndClosed = "K0820";

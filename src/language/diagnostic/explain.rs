@@ -206,6 +206,9 @@ examples! {
         "[shape.a.ruled]\nfrom = { polyline = { points = [[0, 0], [1, 0, 1], [1, 1], [0, 1, 1]], closed = true } }\nto = [0, 0, 4]\ncaps = false";
     DoesNotFit: "Each measure of a shape is right by itself, but they do not go together: a rounding wider than its box, a hole wider than its tube.",
         "[shape.a.box]\nsize = [4, 1, 4]\nradius = 0.6" => "[shape.a.box]\nsize = [4, 1, 4]\nradius = 0.4";
+    AlongUp: "With `frame = \"up\"` the profile stands upright across its path. Where the path itself runs along `up`, no way of standing is more upright than another, and just beside that place the profile would spin.",
+        "[curve.way.polyline]\npoints = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]\n[shape.a.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = \"way\"\nframe = \"up\"" =>
+        "[curve.way.polyline]\npoints = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]\n[shape.a.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = \"way\"\nframe = \"up\"\nup = [0, 0, 1]";
     ImportFailed: "A file is damaged or cut off. The message names its line and value. Export it again.",
         "" => "";
     ImportNote: "Something in an imported file was passed over or put right; the notes say what and where.",

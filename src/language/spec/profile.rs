@@ -1,7 +1,12 @@
 //! Shapes made from curves: revolve, extrude, sweep.
 
+use glam::DVec3;
+
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::Span;
 use crate::language::spec::check::Check;
 use crate::language::spec::construct::{choices, table};
+use crate::language::spec::reader::Reader;
 use crate::language::spec::reference::CurveReference;
 use crate::language::spec::spanned::Sp;
 
@@ -45,11 +50,15 @@ table! {
         path: CurveReference;
         /// How the profile is carried along the path.
         frame: Sp<Frame> = Frame::RotationMinimizing;
+        /// With `frame = "up"`, the direction; the document's own up when it is not written. The path must not run along
+        /// it.
+        up: Option<Sp<DVec3>>;
         /// How far the profile turns about the path from start to end, in degrees.
         twist: Sp<f64> = 0.0 => Check::within(-1e6, 1e6);
         /// Whether both ends are closed with flat caps, so that the result is a solid.
         caps: Sp<bool> = true;
     }
+    checked check
 }
 
 choices! {
@@ -57,5 +66,30 @@ choices! {
     Frame {
         /// It turns about the path no more than the path itself makes it.
         RotationMinimizing = "rotation-minimizing";
+        /// Its x looks to the center of the bend. After an inflection it looks from the center, so that nothing jumps;
+        /// straight parts turn evenly from the bend before to the one after.
+        Frenet = "frenet";
+        /// Its y is as near to the direction of `up` as can be: for handrails, roads, mouldings.
+        Up = "up";
+    }
+}
+
+impl Sweep {
+    fn check(&self, _: Span, reader: &mut Reader<'_>) -> bool {
+        let Some(up) = self.up else { return true };
+        if self.frame.value != Frame::Up {
+            let message = format!("`up` has no meaning with `frame = \"{}\"`", self.frame.text());
+            let report = Diagnostic::error(Code::Conflict, message)
+                .at(up.span, "only for frame = \"up\"")
+                .help("write `frame = \"up\"`, or leave `up` out");
+            reader.report(report);
+            return false;
+        }
+        if up.value == DVec3::ZERO {
+            let report = Diagnostic::error(Code::OutOfRange, "`up` must not be [0, 0, 0]");
+            reader.report(report.at(up.span, "no direction"));
+            return false;
+        }
+        true
     }
 }
