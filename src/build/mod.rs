@@ -5,8 +5,8 @@
 //! (profiles flat, closed where they must be, on their side of the axis, free of crossings).
 
 mod bspline;
-mod conic;
 mod carry;
+mod conic;
 mod curve;
 mod import;
 mod material;
