@@ -59,7 +59,12 @@ fn the_reference_page_lists_every_table_once() {
         page.contains("| `angle` | number > 0, ≤ 360 | `360` | How far it is turned, in degrees. |"),
         "{page}"
     );
-    assert!(page.contains("| `frame` | `\"rotation-minimizing\"` | `\"rotation-minimizing\"` |"), "{page}");
+    assert!(
+        page.contains(
+            "| `frame` | `\"rotation-minimizing\"`, `\"frenet\"`, `\"up\"` | `\"rotation-minimizing\"` |"
+        ),
+        "{page}"
+    );
     assert!(page.contains("| `smoothstep(from, to, x)` |"));
 }
 

@@ -137,19 +137,31 @@ impl Search<'_> {
     fn parts(&self, stops: &[Stop]) -> Vec<Part> {
         let mut parts = Vec::new();
         let mut last = (stops[0].t, self.angle(stops[0].t));
-        for pair in stops.windows(2) {
-            for k in 1..=SAMPLES {
-                let share = f64::from(k) / f64::from(SAMPLES);
-                let t = if k == SAMPLES { pair[1].t } else { pair[0].t + (pair[1].t - pair[0].t) * share };
-                let next = (t, self.angle(t));
-                if let Some(end) = self.change(last, next) {
-                    parts.push(Part { end, kind: kind(last.1) });
-                }
-                last = next;
+        for t in self.samples(stops) {
+            let next = (t, self.angle(t));
+            if let Some(end) = self.change(last, next) {
+                parts.push(Part { end, kind: kind(last.1) });
             }
+            last = next;
         }
         parts.push(Part { end: self.ends.1, kind: kind(last.1) });
         parts
+    }
+
+    /// Parameters after the first stop, close enough to miss nothing: between two breaks at least one.
+    fn samples(&self, stops: &[Stop]) -> Vec<f64> {
+        let breaks: Vec<f64> =
+            self.path.breaks().into_iter().filter(|t| *t > self.ends.0 && *t < self.ends.1).collect();
+        let between = breaks.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0);
+        let outer =
+            [breaks.first().map(|t| (t + self.ends.0) / 2.0), breaks.last().map(|t| (t + self.ends.1) / 2.0)];
+        let steps = stops.windows(2).flat_map(|pair| {
+            let step = (pair[1].t - pair[0].t) / f64::from(SAMPLES);
+            (1..=SAMPLES).map(move |k| if k == SAMPLES { pair[1].t } else { pair[0].t + step * f64::from(k) })
+        });
+        let mut all: Vec<f64> = steps.chain(between).chain(outer.into_iter().flatten()).collect();
+        all.sort_by(f64::total_cmp);
+        all
     }
 
     /// Where between two samples the kind changes or the normal jumps.
