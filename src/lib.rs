@@ -11,7 +11,8 @@
 //! | --- | --- |
 //! | `geometry::number` | |
 //! | `geometry::planar` | `geometry::number` |
-//! | `geometry::curve` | `geometry::number` |
+//! | `geometry::formula` | `geometry::number` |
+//! | `geometry::curve` | `geometry::number`, `geometry::formula` |
 //! | `geometry::mesh` | `geometry::number`, `geometry::planar` |
 //! | `geometry::surface` | `geometry::number`, `geometry::curve` |
 //! | `geometry::tessellate` | `geometry::number`, `geometry::planar`, `geometry::curve`, `geometry::mesh`, `geometry::surface` |

@@ -53,6 +53,7 @@ impl Builder<'_> {
             Curve::Parabola(parabola) => self.parabola(parabola, span),
             Curve::Hyperbola(hyperbola) => self.hyperbola(hyperbola, span),
             Curve::Conic(conic) => self.conic(conic, span),
+            Curve::Formula(formula) => self.formula_curve(formula, span),
             Curve::Arc(arc) => self.arc(arc, span),
             Curve::Helix(helix) => Some(AnyCurve::Helix(Helix {
                 radius: helix.radius.value,

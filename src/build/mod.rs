@@ -8,6 +8,8 @@ mod bspline;
 mod carry;
 mod conic;
 mod curve;
+mod formula;
+mod formula_curve;
 mod import;
 mod material;
 mod node;

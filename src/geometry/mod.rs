@@ -1,9 +1,10 @@
-//! Geometry: numbers, curves, surfaces, meshes, and the step from continuous to discrete.
+//! Geometry: numbers, formulas, curves, surfaces, meshes, and the step from continuous to discrete.
 //!
 //! Kernels here compute in `f64`, know nothing of the language, of files or of the number of threads, and
 //! give the same bits on every machine.
 
 pub mod curve;
+pub mod formula;
 pub mod mesh;
 pub mod number;
 pub mod planar;

@@ -51,7 +51,10 @@ fn a_wrong_example_gives_its_code_and_a_right_one_none() {
         let example = example(code);
         assert!(example.text.ends_with('.'), "{code}");
         if !example.wrong.is_empty() {
-            assert_eq!(codes(example.wrong), [code], "{code}: {}", example.wrong);
+            // What the document alone does not tell is found when it is built.
+            let found = codes(example.wrong);
+            let found = if found.is_empty() { baked_codes(example.wrong) } else { found };
+            assert_eq!(found, [code], "{code}: {}", example.wrong);
         }
         assert_eq!(codes(example.right), [], "{code}: {}", example.right);
     }

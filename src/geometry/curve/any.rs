@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::{
-    BezierSpline, Curve, Domain, EllipseArc, FourPointCurve, Helix, HyperbolaArc, Jet, Path, Polyline,
-    RationalSpline, Retimed, Reversed, Side, Transformed,
+    BezierSpline, Curve, Domain, EllipseArc, FormulaCurve, FourPointCurve, Helix, HyperbolaArc, Jet, Path,
+    Polyline, RationalSpline, Retimed, Reversed, Side, Transformed,
 };
 use crate::geometry::number::Bounds;
 
@@ -25,6 +25,8 @@ pub enum AnyCurve {
     Rational(RationalSpline),
     /// The limit of the four-point scheme.
     FourPoint(FourPointCurve),
+    /// A formula of one variable.
+    Formula(Box<FormulaCurve>),
     /// Curves end to start.
     Path(Path),
     /// A curve under an affine map.
@@ -45,6 +47,7 @@ macro_rules! each_kind {
             AnyCurve::Bezier($curve) => $body,
             AnyCurve::Rational($curve) => $body,
             AnyCurve::FourPoint($curve) => $body,
+            AnyCurve::Formula($curve) => $body,
             AnyCurve::Path($curve) => $body,
             AnyCurve::Transformed($curve) => $body,
             AnyCurve::Reversed($curve) => $body,

@@ -9,8 +9,10 @@
 
 mod any;
 mod bezier;
+mod chord;
 pub mod control;
 mod ellipse;
+mod formula;
 mod four_point;
 mod helix;
 mod hermite;
@@ -26,12 +28,14 @@ mod rational;
 mod retimed;
 mod spline;
 mod spline_ends;
+mod study;
 mod subdivision;
 mod windows;
 
 pub use any::AnyCurve;
 pub use bezier::{BezierError, BezierSpline};
 pub use ellipse::EllipseArc;
+pub use formula::FormulaCurve;
 pub use four_point::FourPointCurve;
 pub use helix::Helix;
 pub use hermite::{
@@ -47,6 +51,7 @@ pub use rational::{RationalError, RationalSpline};
 pub use retimed::{Retimed, jumps};
 pub use spline::{Parametrization, SplineError, interpolate, interpolate_closed, parameters};
 pub use spline_ends::{SplineEnd, interpolate_with};
+pub use study::FormulaFault;
 pub use subdivision::{Border, Scheme, chaikin_limit, fewest, refine, three_point_limit};
 pub use windows::{beta_spline, windows};
 

@@ -6,6 +6,7 @@
 
 mod angle;
 mod elementary;
+mod noise;
 mod tolerance;
 mod whole;
 
@@ -13,5 +14,6 @@ pub use angle::{cos_degrees, sin_cos_degrees, sin_degrees, tan_degrees};
 pub use elementary::{
     acos, asin, asinh, atan, atan2, cbrt, cos, cosh, exp, hypot, ln, pow, sin, sin_cos, sinh, tan, tanh,
 };
+pub use noise::{noise, noise_gradient};
 pub use tolerance::{Bounds, single_rounding};
 pub use whole::{count_of, floor_count, floor_index, floor_large, single, size};

@@ -143,6 +143,12 @@ codes! {
     TensionRange = "K0610";
     /// pieces of a curve do not meet
     PiecesApart = "K0611";
+    /// a formula has no finite value somewhere in its range
+    FormulaValue = "K0615";
+    /// a formula jumps where a curve must be one piece
+    FormulaJump = "K0616";
+    /// a formula changes too often to be followed
+    FormulaWild = "K0617";
 
     /// a face names a point that does not exist
     FaceIndex = "K0701";

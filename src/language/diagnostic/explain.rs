@@ -157,6 +157,15 @@ examples! {
     PiecesApart: "Each piece of a curve begins where the one before ends. The labels show both places.",
         "[curve.a.cubic]\ncoefficients = [[[0, 0], [1, 0], [0, 0], [0, 1]], [[1, 0], [1, 3], [0, 0], [0, 0]]]" =>
         "[curve.a.cubic]\ncoefficients = [[[0, 0], [1, 0], [0, 0], [0, 1]], [[1, 1], [1, 3], [0, 0], [0, 0]]]";
+    FormulaValue: "A formula must have a finite value over its whole range: no division by zero, no root or logarithm of what is negative. The message names the place and the part of the formula.",
+        "[curve.a.formula]\ny = \"= sqrt(1 - x ^ 2)\"\nfrom = -2\nto = 1" =>
+        "[curve.a.formula]\ny = \"= sqrt(1 - x ^ 2)\"\nfrom = -1\nto = 1\n[shape.s.sphere]\nradius = 1";
+    FormulaJump: "A curve is one piece. Formulas with `floor`, `sign`, `%` or `if` may jump; end the curve there, or lead over with `smoothstep` or `mix`. Kinks are no jumps: they become corners.",
+        "[curve.a.formula]\ny = \"= if(x < 0, 0, 1)\"\nfrom = -1\nto = 1" =>
+        "[curve.a.formula]\ny = \"= smoothstep(-0.5, 0.5, x)\"\nfrom = -1\nto = 1\n[shape.s.sphere]\nradius = 1";
+    FormulaWild: "A formula is studied before it is used, so that no kink and no place without a value is missed. One with hundreds of thousands of waves is refused.",
+        "[curve.a.formula]\ny = \"= abs(sin(1e9 * x))\"\nfrom = 0\nto = 360" =>
+        "[curve.a.formula]\ny = \"= abs(sin(10 * x))\"\nfrom = 0\nto = 360\n[shape.s.sphere]\nradius = 1";
     FaceIndex: "A face names a point that is not in the list. Indices count from 0.",
         "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[1, 2, 3]]" =>
         "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[0, 1, 2]]";

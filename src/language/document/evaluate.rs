@@ -1,7 +1,7 @@
 //! Expressions put into the value tree.
 
 use crate::language::diagnostic::{Code, Diagnostic};
-use crate::language::document::parameters::Parameters;
+use crate::language::document::parameters::{FormulaOrValue, Parameters};
 use crate::language::expression::{Computed, FUNCTIONS, body};
 use crate::language::source::{SourceMap, Span};
 use crate::language::spec::{backtick, check_name};
@@ -38,7 +38,7 @@ pub(crate) fn evaluate(
     }
     let mut tree = Tree { parameters: &mut parameters, items: 0 };
     for entry in table.entries.values_mut() {
-        tree.value(&mut entry.value);
+        tree.value(&mut entry.value, Place::TOP);
     }
     found.append(&mut parameters.found);
     if found.is_empty() {
@@ -111,30 +111,69 @@ fn plain(text: &str) -> String {
     quoted[1..quoted.len() - 1].to_owned()
 }
 
+/// Where a value stands in the document.
+#[derive(Clone, Copy)]
+struct Place {
+    /// Names on the way from the top.
+    depth: usize,
+    /// Whether an expression here may have variables: directly under the name `formula`, or in the table of that
+    /// name.
+    formula: Option<Level>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Level {
+    Named,
+    Inside,
+}
+
+impl Place {
+    const TOP: Self = Self { depth: 1, formula: None };
+
+    /// The place of an entry of the table that stands here. The first two names are the family and the name of
+    /// a definition, which may well be called `formula`.
+    fn entry(self, name: &str) -> Self {
+        let formula = if name == "formula" && self.depth >= 2 {
+            Some(Level::Named)
+        } else if self.formula == Some(Level::Named) {
+            Some(Level::Inside)
+        } else {
+            None
+        };
+        Self { depth: self.depth + 1, formula }
+    }
+}
+
 struct Tree<'p, 'd> {
     parameters: &'p mut Parameters<'d>,
     items: u64,
 }
 
 impl Tree<'_, '_> {
-    fn value(&mut self, value: &mut Value) {
+    fn value(&mut self, value: &mut Value, place: Place) {
         match &mut value.data {
             Data::String(text) if body(text).is_some() => {
-                let computed = self.parameters.expression(text, value.span);
-                value.data = data(computed, value.span);
+                value.data = match place.formula {
+                    Some(_) => formula(self.parameters.formula(text, value.span), value.span),
+                    None => data(self.parameters.expression(text, value.span), value.span),
+                };
             }
-            Data::Array(items) => items.iter_mut().for_each(|item| self.value(item)),
+            Data::Array(items) => items.iter_mut().for_each(|item| self.value(item, place)),
             Data::Table(table) if table.get("each").is_some() => {
                 let table = std::mem::take(table);
-                value.data = self.generate(table, value.span).map_or(Data::Broken, Data::Array);
+                value.data = self.generate(table, value.span, place).map_or(Data::Broken, Data::Array);
             }
-            Data::Table(table) => table.entries.values_mut().for_each(|entry| self.value(&mut entry.value)),
+            Data::Table(table) => {
+                for (name, entry) in &mut table.entries {
+                    self.value(&mut entry.value, place.entry(name));
+                }
+            }
             _ => {}
         }
     }
 
     /// The items of `{ count, each }`.
-    fn generate(&mut self, mut table: Table, span: Span) -> Option<Vec<Value>> {
+    fn generate(&mut self, mut table: Table, span: Span, place: Place) -> Option<Vec<Value>> {
         let count = table.entries.shift_remove("count");
         let each = table.entries.shift_remove("each")?.value;
         for (name, entry) in &table.entries {
@@ -149,13 +188,13 @@ impl Tree<'_, '_> {
         };
         let count = self.count(count)?;
         let outer = self.parameters.index;
-        let items = self.items(&each, count);
+        let items = self.items(&each, count, place);
         self.parameters.index = outer;
         items
     }
 
     fn count(&mut self, mut entry: Entry) -> Option<u64> {
-        self.value(&mut entry.value);
+        self.value(&mut entry.value, Place::TOP);
         let (value, span) = (&entry.value, entry.value.span);
         if matches!(value.data, Data::Broken) {
             return None;
@@ -182,7 +221,7 @@ impl Tree<'_, '_> {
     }
 
     /// One item for each index; stops at the first that has no value, since the rest would repeat its error.
-    fn items(&mut self, each: &Value, count: u64) -> Option<Vec<Value>> {
+    fn items(&mut self, each: &Value, count: u64, place: Place) -> Option<Vec<Value>> {
         let parsed = match &each.data {
             Data::String(text) if body(text).is_some() => {
                 Some((self.parameters.parsed(text, each.span)?, text))
@@ -202,7 +241,7 @@ impl Tree<'_, '_> {
                 }
                 None => {
                     let mut item = each.clone();
-                    self.value(&mut item);
+                    self.value(&mut item, place);
                     item
                 }
             };
@@ -224,6 +263,14 @@ fn data(computed: Option<Computed>, span: Span) -> Data {
         Some(Computed::List(items)) => {
             Data::Array(items.into_iter().map(|item| Value::new(span, data(Some(item), span))).collect())
         }
+    }
+}
+
+fn formula(found: Option<FormulaOrValue>, span: Span) -> Data {
+    match found {
+        Some(FormulaOrValue::Formula(formula)) => Data::Formula(formula),
+        Some(FormulaOrValue::Value(value)) => data(Some(value), span),
+        None => Data::Broken,
     }
 }
 

@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use crate::language::diagnostic::{Code, Diagnostic};
-use crate::language::expression::{Computed, Evaluator, Expression, Fault, Scope, body, parse};
+use crate::language::expression::{
+    Computed, Evaluator, Expression, Fault, Formula, Scope, VARIABLES, body, parse,
+};
 use crate::language::source::{SourceMap, Span};
 use crate::language::suggest::closest;
 use crate::language::value::{Data, Table, Value};
@@ -29,6 +31,12 @@ pub(crate) struct Parameters<'d> {
     computing: Vec<String>,
     steps: u64,
     most_steps: u64,
+}
+
+/// What an expression gives where a formula may stand.
+pub(crate) enum FormulaOrValue {
+    Formula(Formula),
+    Value(Computed),
 }
 
 enum State {
@@ -97,7 +105,7 @@ impl<'d> Parameters<'d> {
                 let read: Vec<_> = items.iter().map(|item| self.read(item, name)).collect();
                 read.into_iter().collect::<Option<Vec<_>>>().map(Computed::List)
             }
-            Data::Table(_) | Data::Datetime(_) => {
+            Data::Table(_) | Data::Datetime(_) | Data::Formula(_) => {
                 let kinds = "a number, true or false, a point or a string";
                 let message = format!("parameter `{name}` must be {kinds}, found {}", value.describe());
                 self.found
@@ -131,6 +139,20 @@ impl<'d> Parameters<'d> {
     /// The value of a tree that was parsed from `text`.
     pub(crate) fn evaluate(&mut self, parsed: &Expression, text: &str, span: Span) -> Option<Computed> {
         Evaluator::new(self).value(parsed).map_err(|fault| self.report(fault, text, span)).ok()
+    }
+
+    /// The formula of a string that is an expression of variables, or its value where it has none.
+    pub(crate) fn formula(&mut self, text: &str, span: Span) -> Option<FormulaOrValue> {
+        let parsed = self.parsed(text, span)?;
+        if !VARIABLES.iter().any(|name| parsed.names(name)) {
+            return self.evaluate(&parsed, text, span).map(FormulaOrValue::Value);
+        }
+        let resolved = parsed.resolved(self).map_err(|fault| self.report(fault, text, span)).ok()?;
+        let offset = self.sources.snippet(span).find(text).and_then(|at| u32::try_from(at).ok());
+        let formula = Formula::new(resolved, text, span, offset);
+        let named = formula.variables().iter().all(|name| self.written.get(name).is_some());
+        let value = if named { Evaluator::new(self).value(&parsed).ok() } else { None };
+        Some(FormulaOrValue::Formula(formula.with_value(value)))
     }
 
     fn report(&mut self, fault: Fault, text: &str, span: Span) {

@@ -7,7 +7,6 @@ use crate::language::diagnostic::Code;
 use crate::language::expression::Computed;
 use crate::language::expression::fault::Fault;
 use crate::language::expression::function::{Call, Function};
-use crate::language::expression::noise::noise;
 use crate::language::expression::parse::{Binary, Expression, Node};
 use crate::language::value::show_number;
 
@@ -275,7 +274,8 @@ fn numeric(call: Call, all: &[f64], range: &Range<usize>) -> Result<Computed> {
         Call::Asin => number::asin(x).to_degrees(),
         Call::Acos => number::acos(x).to_degrees(),
         Call::Atan => number::atan(x).to_degrees(),
-        Call::Atan2 => number::atan2(x, all[1]).to_degrees(),
+        // Zero has one sign, or the angle behind the origin would have two.
+        Call::Atan2 => number::atan2(x + 0.0, all[1]).to_degrees(),
         Call::Sqrt => x.sqrt(),
         Call::Abs => x.abs(),
         Call::Sign => {
@@ -290,9 +290,12 @@ fn numeric(call: Call, all: &[f64], range: &Range<usize>) -> Result<Computed> {
         Call::Floor => x.floor(),
         Call::Ceil => x.ceil(),
         Call::Round => x.round(),
+        Call::Sinh => number::sinh(x),
+        Call::Cosh => number::cosh(x),
+        Call::Tanh => number::tanh(x),
         Call::Exp => number::exp(x),
         Call::Ln => number::ln(x),
-        Call::Noise => noise(x, all[1], all[2]),
+        Call::Noise => number::noise(x, all[1], all[2]),
         Call::Smoothstep => return smoothstep(all, range),
         Call::Clamp => return clamp(all, range),
         Call::If | Call::Mix | Call::Length => f64::NAN,

@@ -32,6 +32,9 @@ pub(crate) enum Call {
     Acos,
     Atan,
     Atan2,
+    Sinh,
+    Cosh,
+    Tanh,
     Sqrt,
     Abs,
     Sign,
@@ -72,6 +75,9 @@ functions! {
     Acos "acos" 1..=1 "acos(x)" "angle in degrees whose cosine is `x`, from 0 to 180";
     Atan "atan" 1..=1 "atan(x)" "angle in degrees whose tangent is `x`, from -90 to 90";
     Atan2 "atan2" 2..=2 "atan2(y, x)" "angle in degrees of the point [x, y], from -180 to 180";
+    Sinh "sinh" 1..=1 "sinh(x)" "hyperbolic sine";
+    Cosh "cosh" 1..=1 "cosh(x)" "hyperbolic cosine: a hanging chain is a * cosh(x / a)";
+    Tanh "tanh" 1..=1 "tanh(x)" "hyperbolic tangent";
     Sqrt "sqrt" 1..=1 "sqrt(x)" "square root";
     Abs "abs" 1..=1 "abs(x)" "size without sign";
     Sign "sign" 1..=1 "sign(x)" "-1, 0 or 1";

@@ -2,19 +2,24 @@
 //!
 //! A name is the longest `[a-z][a-z0-9-]*`, so `+` and `-` between operands need spaces on both sides.
 //! Angles are in degrees. Nothing here depends on the machine: transcendental functions come from
-//! [`geometry::number`](crate::geometry::number).
+//! [`geometry::number`](crate::geometry::number). Where a formula is asked for, an expression has variables
+//! beside the parameters and is kept as a tree.
 
 mod evaluate;
 mod fault;
+mod formula;
 mod function;
-mod noise;
 mod parse;
 mod token;
 
 pub use evaluate::{Evaluator, Scope};
 pub use fault::Fault;
+pub use formula::{Formula, VARIABLES};
 pub use function::{FUNCTIONS, Function};
 pub use parse::{Expression, parse};
+
+pub(crate) use function::Call;
+pub(crate) use parse::{Binary, Node};
 
 /// What an expression computes.
 #[derive(Clone, Debug, PartialEq)]

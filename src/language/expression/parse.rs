@@ -23,7 +23,7 @@ pub struct Expression {
 }
 
 impl Expression {
-    fn new(node: Node, range: Range<usize>) -> Self {
+    pub(crate) fn new(node: Node, range: Range<usize>) -> Self {
         let inner = match &node {
             Node::Number(_) | Node::Boolean(_) | Node::Text(_) | Node::Name(_) => 0,
             Node::List(items) | Node::Call(_, items) => {

@@ -10,6 +10,7 @@ use crate::language::spec::check::Check;
 use crate::language::spec::conic::{Conic, Hyperbola, Parabola, check_turn};
 use crate::language::spec::construct::{kinds, table};
 use crate::language::spec::cubic::{BetaSpline, Cubic};
+use crate::language::spec::formula::FormulaCurve;
 use crate::language::spec::path::Path;
 use crate::language::spec::point::{Point, Scale};
 use crate::language::spec::reader::Reader;
@@ -39,6 +40,8 @@ kinds! {
         Conic(Conic) = "conic";
         /// A part of a circle.
         Arc(Arc) = "arc";
+        /// A curve by formulas: y = f(x), or x, y, z of t.
+        Formula(FormulaCurve) = "formula";
         /// A screw line that climbs along +y.
         Helix(Helix) = "helix";
         /// A smooth curve through points.

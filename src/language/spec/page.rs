@@ -23,6 +23,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 5] = [
             "parabola",
             "hyperbola",
             "conic",
+            "formula",
             "arc",
             "helix",
             "natural-spline",

@@ -18,6 +18,7 @@ impl Value {
             Data::Array(items) if items.is_empty() => "an empty array".to_owned(),
             Data::Array(items) if items.len() == 1 => "an array of 1 item".to_owned(),
             Data::Array(items) => format!("an array of {} items", items.len()),
+            Data::Formula(formula) => format!("a formula of {}", formula.variables().join(", ")),
             Data::Table(_) => "a table".to_owned(),
             Data::Broken => "a value with errors".to_owned(),
         }

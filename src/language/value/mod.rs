@@ -9,6 +9,7 @@ pub use parse::parse;
 
 use indexmap::IndexMap;
 
+use crate::language::expression::Formula;
 use crate::language::source::Span;
 
 /// One value of a document and the place that wrote it.
@@ -35,6 +36,8 @@ pub enum Data {
     Datetime(String),
     /// `[...]`, or the tables under `[[...]]` headers.
     Array(Vec<Value>),
+    /// An expression with variables, where a formula may stand.
+    Formula(Formula),
     /// `{...}` or what stands under a header.
     Table(Table),
     /// Something that was already reported; reading it fails silently.
@@ -74,6 +77,7 @@ impl Value {
             )]
             Data::Integer(number) => Some(number as f64),
             Data::Float(number) => Some(number),
+            Data::Formula(ref formula) => formula.value(),
             _ => None,
         }
     }

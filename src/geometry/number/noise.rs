@@ -6,11 +6,12 @@
 /// Smooth noise: 0 where both coordinates are whole, twice differentiable, within -1 to 1.
 ///
 /// Coordinates beyond 2^52 have no fraction and give 0. Cost: four hashes.
-pub(crate) fn noise(seed: f64, x: f64, y: f64) -> f64 {
+#[must_use]
+pub fn noise(seed: f64, x: f64, y: f64) -> f64 {
     let (column, row) = (x.floor(), y.floor());
     let (u, v) = (x - column, y - row);
     let corner = |dx: f64, dy: f64| {
-        let (gx, gy) = gradient(seed, column + dx, row + dy);
+        let (gx, gy) = noise_gradient(seed, column + dx, row + dy);
         gx * (u - dx) + gy * (v - dy)
     };
     let (s, t) = (fade(u), fade(v));
@@ -28,7 +29,9 @@ fn fade(t: f64) -> f64 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
 
-fn gradient(seed: f64, x: f64, y: f64) -> (f64, f64) {
+/// The unit gradient of the lattice point (x, y).
+#[must_use]
+pub fn noise_gradient(seed: f64, x: f64, y: f64) -> (f64, f64) {
     const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
     // Adding zero makes -0 and 0 one lattice point.
     let bits = [seed, x, y].iter().fold(0, |hash, number| scramble(hash ^ (number + 0.0).to_bits()));
