@@ -76,9 +76,9 @@ pub enum EndRule {
     Natural,
     /// The first and last piece are parabolas.
     Quadratic,
-    /// As if the polygon went straight on: p[-1] = 2 p[0] - p[1].
+    /// As if the polygon went straight on: `p[-1] = 2 p[0] - p[1]`.
     Reflect,
-    /// As if the end stood twice: p[-1] = p[0].
+    /// As if the end stood twice: `p[-1] = p[0]`.
     Duplicate,
     /// The first and the last point only guide: the curve runs from the second to the last but one.
     Guides,

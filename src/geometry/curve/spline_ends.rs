@@ -25,7 +25,7 @@ pub enum SplineEnd {
     NotAKnot,
 }
 
-/// One row a[k] M[k - 1] + b[k] M[k] + c[k] M[k + 1] = right[k].
+/// Rows `a[k] M[k - 1] + b[k] M[k] + c[k] M[k + 1] = right[k]`.
 struct Rows {
     a: Vec<f64>,
     b: Vec<f64>,

@@ -31,7 +31,7 @@ pub enum Scheme {
 pub enum Border {
     /// There is no end.
     Closed,
-    /// The polygon is continued by reflection in its end, p[-1] = 2 p[0] - p[1]; the curve runs from the first
+    /// The polygon is continued by reflection in its end, `p[-1] = 2 p[0] - p[1]`; the curve runs from the first
     /// point to the last.
     Reflect,
     /// Only what the given points determine is kept, so that the curve ends before they do.

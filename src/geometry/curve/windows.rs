@@ -40,8 +40,8 @@ pub fn windows(
 /// each joint is `bias` times that before. Its pieces cover unit intervals.
 ///
 /// With `through_ends` an open curve runs from the first to the last point: the polygon is continued by the points
-/// that make it so, p[-1] = p[0] + (p[0] - p[1]) / bias^3 and p[n] = p[n - 1] + (p[n - 1] - p[n - 2]) bias^3, which
-/// are reflections where the bias is 1. Source: B. Barsky, Computer Graphics and Geometric Modeling Using
+/// that make it so, `p[-1] = p[0] + (p[0] - p[1]) / bias^3` and `p[n] = p[n - 1] + (p[n - 1] - p[n - 2]) bias^3`,
+/// which are reflections where the bias is 1. Source: B. Barsky, Computer Graphics and Geometric Modeling Using
 /// Beta-splines, 1988.
 ///
 /// # Errors
