@@ -1,7 +1,7 @@
 //! Topology of an index buffer: closed, manifold, components, Euler number, genus, boundary.
 //!
 //! Exact: no coordinate is read. Callers merge equal positions first; vertices that stand on one position are one
-//! *point* here. Most meshes are oriented surfaces, and a quick proof of that ([`surface`]) comes first; the general
+//! *point* here. Most meshes are oriented surfaces, and a quick proof of that (`surface`) comes first; the general
 //! way follows where it fails. A *corner* is a place in the index buffer, and names the edge that leaves it: corner
 //! `3t` of triangle (a, b, c) is the edge a-b. Edges of one pair of points are paired by bucketing all corners under
 //! the lower of their two points and sorting each bucket by the higher, so nothing is hashed.

@@ -136,7 +136,7 @@ fn centroid(corners: &[Corner; 3]) -> (f64, f64) {
     sum
 }
 
-/// The greatest size over a triangle of a quadratic function that vanishes at the corners: the sum of m[k] times
+/// The greatest size over a triangle of a quadratic function that vanishes at the corners: the sum of `m[k]` times
 /// the product of the two other barycentric coordinates.
 pub(super) fn greatest([a, b, c]: [f64; 3]) -> f64 {
     let sides = a.abs().max(b.abs()).max(c.abs()) / 4.0;

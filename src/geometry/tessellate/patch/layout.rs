@@ -28,7 +28,7 @@ pub enum Rim {
 }
 
 impl Rim {
-    /// All four, in the order of [`Block::sides`].
+    /// All four, in the order of `Block::sides`.
     pub const ALL: [Self; 4] = [Self::Bottom, Self::Right, Self::Top, Self::Left];
 
     /// The fractions of u and v at a fraction of the rim.
