@@ -168,7 +168,9 @@ fn describe(name: &str, schema: &Json, object: Option<&Map<String, Json>>) -> St
         "boolean" => "true or false".to_owned(),
         "array" => {
             let item = kind(&schema["items"]);
-            let plural = item.replacen("number", "numbers", 1);
+            let nested = item.starts_with(|letter: char| letter.is_ascii_digit());
+            let plural =
+                if nested { format!("lists of {item}") } else { item.replacen("number", "numbers", 1) };
             match (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {
                 (Some(least), Some(most)) if least == most => format!("{least} {plural}"),
                 (Some(least), Some(most)) => format!("{least} or {most} {plural}"),
