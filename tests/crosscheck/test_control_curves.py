@@ -26,12 +26,8 @@ def assert_spline(found: dict[str, Any], spline: CubicSpline, at: Any) -> None:
     """Points and both derivatives of samples over the whole domain of a scipy spline."""
     span = spline.x[-1] - spline.x[0]
     np.testing.assert_allclose(found["points"], spline(at), atol=ACCURACY * 10)
-    np.testing.assert_allclose(
-        found["first"], spline(at, 1) * span, atol=ACCURACY * 100
-    )
-    np.testing.assert_allclose(
-        found["second"], spline(at, 2) * span**2, atol=ACCURACY * 1e4
-    )
+    np.testing.assert_allclose(found["first"], spline(at, 1) * span, atol=ACCURACY * 100)
+    np.testing.assert_allclose(found["second"], spline(at, 2) * span**2, atol=ACCURACY * 1e4)
 
 
 @pytest.mark.parametrize("start", ENDS)
@@ -41,9 +37,7 @@ def test_ends_are_scipys(kiln: Kiln, start: str, end: str) -> None:
     t = knots(points, 0.5)
     spline = CubicSpline(t, points, bc_type=(ENDS[start][1], ENDS[end][1]))
     shares = np.linspace(0, 1, 31)
-    lines = (
-        f'parameters = "centripetal"\nstart = {ENDS[start][0]}\nend = {ENDS[end][0]}\n'
-    )
+    lines = f'parameters = "centripetal"\nstart = {ENDS[start][0]}\nend = {ENDS[end][0]}\n'
     found = sampled(kiln, f"[curve.c.spline]\npoints = {POINTS}\n{lines}", shares)
     assert_spline(found, spline, shares * t[-1])
 
@@ -90,18 +84,14 @@ def test_b_splines_are_scipys_and_geomdls(kiln: Kiln, degree: int) -> None:
     inner = np.linspace(0, 1, len(CONTROL) - degree + 1)[1:-1] ** 2
     vector = np.concatenate([np.zeros(degree + 1), inner, np.ones(degree + 1)]).tolist()
     shares = np.linspace(0, 1, 53)
-    spec = (
-        f"[curve.c.b-spline]\npoints = {CONTROL}\ndegree = {degree}\nknots = {vector}\n"
-    )
+    spec = f"[curve.c.b-spline]\npoints = {CONTROL}\ndegree = {degree}\nknots = {vector}\n"
     found = sampled(kiln, spec, shares)
     spline = ScipyBSpline(vector, np.array(CONTROL), degree)
     np.testing.assert_allclose(found["points"], spline(shares), atol=1e-11)
     np.testing.assert_allclose(found["first"][1:-1], spline(shares[1:-1], 1), atol=1e-8)
     other = BSpline.Curve()
     other.degree, other.ctrlpts, other.knotvector = degree, CONTROL, vector
-    np.testing.assert_allclose(
-        found["points"], other.evaluate_list(shares.tolist()), atol=1e-11
-    )
+    np.testing.assert_allclose(found["points"], other.evaluate_list(shares.tolist()), atol=1e-11)
 
 
 @pytest.mark.parametrize("degree", [2, 3, 5])
@@ -132,9 +122,7 @@ def test_four_points_two_at_infinity_are_a_circle(kiln: Kiln) -> None:
     found = sampled(kiln, spec, np.linspace(0, 1, 101))
     np.testing.assert_allclose(np.linalg.norm(found["points"], axis=1), 1.0, atol=1e-15)
     assert found["length"] == pytest.approx(2 * np.pi, rel=1e-12)
-    assert [sample["curvature"] for sample in found["samples"]] == pytest.approx(
-        [1.0] * 101, rel=1e-12
-    )
+    assert [sample["curvature"] for sample in found["samples"]] == pytest.approx([1.0] * 101, rel=1e-12)
 
 
 def test_closed_b_splines_are_scipys_periodic_ones(kiln: Kiln) -> None:
@@ -142,9 +130,7 @@ def test_closed_b_splines_are_scipys_periodic_ones(kiln: Kiln) -> None:
     wrapped = np.array([*CONTROL, *CONTROL[:degree]])
     spline = ScipyBSpline(np.arange(-degree, count + degree + 1.0), wrapped, degree)
     shares = np.linspace(0, 1, 61)
-    found = sampled(
-        kiln, f"[curve.c.b-spline]\npoints = {CONTROL}\nclosed = true\n", shares
-    )
+    found = sampled(kiln, f"[curve.c.b-spline]\npoints = {CONTROL}\nclosed = true\n", shares)
     np.testing.assert_allclose(found["points"], spline(shares * count), atol=1e-11)
     assert found["closed"] is True
     assert found["seam"] == "C2"
