@@ -102,6 +102,21 @@ pub trait Algebra: Copy {
     fn noise(seed: f64, x: Self, y: Self) -> Self;
 }
 
+/// Sum.
+pub(super) fn plus<T: Algebra>(x: T, y: T) -> T {
+    T::binary(Binary::Add, x, y)
+}
+
+/// Difference.
+pub(super) fn minus<T: Algebra>(x: T, y: T) -> T {
+    T::binary(Binary::Subtract, x, y)
+}
+
+/// Product.
+pub(super) fn times<T: Algebra>(x: T, y: T) -> T {
+    T::binary(Binary::Multiply, x, y)
+}
+
 /// A truth as a number.
 pub(super) fn truth(holds: bool) -> f64 {
     if holds { 1.0 } else { 0.0 }

@@ -3,7 +3,7 @@
 //! Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed. 2008, ch. 3 and 13: the chain rule to
 //! second order, carried through every operation.
 
-use super::algebra::{Algebra, Binary, Unary};
+use super::algebra::{Algebra, Binary, Unary, minus, plus, times};
 use super::interval::{Interval, Quality};
 use super::noise::Cells;
 
@@ -193,18 +193,6 @@ impl<T: Decide, const N: usize> Jet<T, N> {
         let minus = |part: T| T::unary(Unary::Negate, part);
         self.zip(self, value, |part, _| minus(part))
     }
-}
-
-fn plus<T: Algebra>(x: T, y: T) -> T {
-    T::binary(Binary::Add, x, y)
-}
-
-fn minus<T: Algebra>(x: T, y: T) -> T {
-    T::binary(Binary::Subtract, x, y)
-}
-
-fn times<T: Algebra>(x: T, y: T) -> T {
-    T::binary(Binary::Multiply, x, y)
 }
 
 fn over<T: Algebra>(x: T, y: T) -> T {

@@ -4,7 +4,7 @@
 //! from its formula. Over a few cells the bounds of each are put together; over many the greatest that noise
 //! can do is taken.
 
-use super::algebra::{Algebra, Binary};
+use super::algebra::{Algebra, minus, plus, times};
 use super::interval::Interval;
 use crate::geometry::number::{floor_index, noise_gradient};
 
@@ -30,18 +30,6 @@ struct Cell<T> {
 struct Bumps<T> {
     value: T,
     slopes: [T; 5],
-}
-
-fn plus<T: Algebra>(x: T, y: T) -> T {
-    T::binary(Binary::Add, x, y)
-}
-
-fn minus<T: Algebra>(x: T, y: T) -> T {
-    T::binary(Binary::Subtract, x, y)
-}
-
-fn times<T: Algebra>(x: T, y: T) -> T {
-    T::binary(Binary::Multiply, x, y)
 }
 
 fn scaled<T: Algebra>(factor: f64, x: T) -> T {

@@ -130,23 +130,33 @@ pub(crate) fn check_closed(what: &str, points: usize, closed: Sp<bool>, reader: 
 }
 
 fn check_increasing(numbers: &[Sp<f64>], reader: &mut Reader<'_>) -> bool {
+    let fault = not_increasing("`parameters`", numbers.iter().map(|number| (number.value, number.span)));
+    let good = fault.is_none();
+    fault.into_iter().for_each(|report| reader.report(report));
+    good
+}
+
+/// What is wrong with numbers that have to increase; `what` names them.
+pub(crate) fn not_increasing(
+    what: &str,
+    numbers: impl ExactSizeIterator<Item = (f64, Span)> + DoubleEndedIterator + Clone,
+) -> Option<Diagnostic> {
     // Steps that are lost beside the whole would leave no digit of the derivatives.
     const CLOSEST: f64 = 1e-12;
-    let span = numbers[numbers.len() - 1].value - numbers[0].value;
-    let still = |pair: &[Sp<f64>]| pair[1].value - pair[0].value <= CLOSEST * span.abs();
-    let Some(index) = numbers.windows(2).position(still) else { return true };
-    let (before, after) = (&numbers[index], &numbers[index + 1]);
+    let span = numbers.clone().next_back()?.0 - numbers.clone().next()?.0;
+    let mut pairs = numbers.clone().zip(numbers.skip(1)).enumerate();
+    let (index, (before, after)) =
+        pairs.find(|(_, (before, after))| after.0 - before.0 <= CLOSEST * span.abs())?;
     let message = format!(
-        "`parameters` must increase, found {} after {} at index {}",
-        show_number(after.value),
-        show_number(before.value),
+        "{what} must increase, found {} after {} at index {}",
+        show_number(after.0),
+        show_number(before.0),
         index + 1
     );
     let report = Diagnostic::error(Code::NotIncreasing, message)
-        .at(after.span, "not greater than the one before")
-        .also(before.span, "the one before");
-    reader.report(report);
-    false
+        .at(after.1, "not greater than the one before")
+        .also(before.1, "the one before");
+    Some(report)
 }
 
 impl Bezier {

@@ -12,7 +12,9 @@ use crate::language::spec::point::Point;
 use crate::language::spec::reader::{Fields, Read, Reader};
 use crate::language::spec::schema::{Object, Schemas, any_of, one_of_words};
 use crate::language::spec::spanned::Sp;
-use crate::language::spec::spline::{Parameters, check_closed, check_parameters, report_repeated};
+use crate::language::spec::spline::{
+    Parameters, check_closed, check_parameters, not_increasing, report_repeated,
+};
 use crate::language::value::{Data, Value, show_number};
 
 table! {
@@ -148,26 +150,11 @@ impl FunctionSpline {
     }
 
     fn check_order(&self, reader: &mut Reader<'_>) -> bool {
-        const CLOSEST: f64 = 1e-12;
-        let points = &self.points;
-        let span = points[points.len() - 1].x - points[0].x;
-        let Some(index) = points.windows(2).position(|pair| pair[1].x - pair[0].x <= CLOSEST * span.abs())
-        else {
-            return true;
-        };
-        let (before, after) = (&points[index], &points[index + 1]);
-        let message = format!(
-            "x must increase, found {} after {} at index {}",
-            show_number(after.x),
-            show_number(before.x),
-            index + 1
-        );
-        let report = Diagnostic::error(Code::NotIncreasing, message)
-            .at(after.span, "not greater than the one before")
-            .also(before.span, "the one before")
-            .help("a function has one y at each x; a curve that turns back is a `spline`");
-        reader.report(report);
-        false
+        let fault = not_increasing("x", self.points.iter().map(|point| (point.x, point.span)));
+        let good = fault.is_none();
+        let help = "a function has one y at each x; a curve that turns back is a `spline`";
+        fault.into_iter().for_each(|report| reader.report(report.help(help)));
+        good
     }
 
     fn check_period(&self, reader: &mut Reader<'_>) -> bool {
