@@ -1,5 +1,9 @@
 //! The pipeline, one line a stage.
 
+mod notice;
+
+use notice::noticed;
+
 use crate::build::{self, Built};
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::number::{Bounds, single_rounding};
@@ -144,18 +148,13 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
         .help(help)
 }
 
-fn noticed(built: &Built, shape: ShapeHandle, note: &str) -> Diagnostic {
-    let name = &built.model.shape(shape).name;
-    Diagnostic::warning(Code::ImportNote, format!("shape `{name}`: {note}"))
-        .at(place(built, shape), "this shape")
-}
-
 /// Shapes whose bound could not be brought under their tolerance.
 fn beyond_tolerance(scene: &scene::Scene, shapes: &[ShapeHandle], built: &Built) -> Vec<Diagnostic> {
     let beyond = |(geometry, shape): (&scene::Geometry, &ShapeHandle)| {
         let tolerance = geometry.tolerance?;
         let bound = geometry.deviation.bound;
-        let rounding = single_rounding(Bounds::of_points(geometry.mesh.points.iter().copied()).reach());
+        let bounds = Bounds::of_points(geometry.mesh.points.iter().copied()).union(geometry.wire.bounds());
+        let rounding = single_rounding(bounds.reach());
         if bound <= tolerance && bound + rounding > tolerance {
             return Some(
                 imprecise(&geometry.name, (bound, rounding, tolerance))
@@ -206,7 +205,8 @@ fn unwritable(error: &SceneError, built: &Built) -> Diagnostic {
     let (code, shape) = match error {
         SceneError::NoTriangle(name) => (Code::NothingToShow, named(name)),
         SceneError::TooLarge(name) => (Code::LimitPassed, named(name)),
-        SceneError::NoArea(name) => (Code::NoArea, named(name)),
+        SceneError::NoArea(name) | SceneError::NoLength(name) => (Code::NoArea, named(name)),
+        SceneError::TexturedWire(name, _) => (Code::TexturedWire, named(name)),
         SceneError::NoUv(name, _) => (Code::Conflict, named(name)),
         SceneError::NotFinite(name) | SceneError::NotUnit(name, _) => (Code::NotFinite, named(name)),
         _ => (Code::NothingToShow, None),
@@ -215,6 +215,10 @@ fn unwritable(error: &SceneError, built: &Built) -> Diagnostic {
     let report = Diagnostic::error(code, error.to_string()).at(span, "this shape");
     if let SceneError::NoUv(..) = error {
         report.help("leave `uv = \"none\"` out, or give it a material without textures")
+    } else if let SceneError::TexturedWire(..) = error {
+        report.help(
+            "give it a material with a plain color, or draw a thin profile along its curves with `sweep`",
+        )
     } else {
         report
     }

@@ -9,11 +9,13 @@ mod glb;
 mod hostile;
 mod mutation;
 mod patches;
+mod polygons;
 mod primitives;
 mod refusals;
 mod shading;
 mod shapes;
 mod sweeps;
+mod wires;
 
 use kiln::compile::{Compiled, Options};
 use kiln::language::Document;

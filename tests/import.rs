@@ -322,7 +322,7 @@ fn polygons_of_the_corpus() {
     assert_eq!((exact, folded), (35, Vec::<String>::new()));
 }
 
-fn loops_of(entry: &Value) -> Vec<Vec<DVec2>> {
+pub(crate) fn loops_of(entry: &Value) -> Vec<Vec<DVec2>> {
     let point = |p: &Value| DVec2::new(p[0].as_f64().expect("x"), p[1].as_f64().expect("y"));
     let ring = |ring: &Value| ring.as_array().expect("points").iter().map(point).collect();
     entry["polygons"].as_array().expect("rings").iter().map(ring).collect()

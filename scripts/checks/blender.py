@@ -54,8 +54,12 @@ def shape(data: bpy.types.Mesh) -> dict[str, Any]:
     """The facts of one mesh; points at equal positions are merged before topology is counted."""
     mesh = bmesh.new()
     mesh.from_mesh(data)
-    facts: dict[str, Any] = {"vertices": len(mesh.verts), "proper-triangles": len(mesh.faces)}
-    facts["bounds"] = box(vertex.co for vertex in mesh.verts)
+    bounds = box(vertex.co for vertex in mesh.verts)
+    facts: dict[str, Any] = take_lines(mesh)
+    facts |= {"bounds": bounds, "vertices": len(mesh.verts), "proper-triangles": len(mesh.faces)}
+    if not mesh.faces:
+        mesh.free()
+        return facts
     weld(mesh)
     facts["proper-area"] = math.fsum(face.calc_area() for face in mesh.faces)
     facts["closed-volume"] = mesh.calc_volume(signed=True)
@@ -63,6 +67,23 @@ def shape(data: bpy.types.Mesh) -> dict[str, Any]:
     facts["proper-edge-manifold"] = all(edge.is_manifold and edge.is_contiguous for edge in mesh.edges)
     facts["proper-euler"] = len(mesh.verts) - len(mesh.edges) + len(mesh.faces)
     mesh.free()
+    return facts
+
+
+def take_lines(mesh: bmesh.types.BMesh) -> dict[str, Any]:
+    """The facts of the edges that bound no face, which are then taken out; none where there are none."""
+    lines = [edge for edge in mesh.edges if edge.is_wire]
+    if not lines:
+        return {}
+    ends = {vertex for edge in lines for vertex in edge.verts}
+    facts = {
+        "lines.segments": len(lines),
+        "lines.vertices": len(ends),
+        "lines.length": math.fsum(edge.calc_length() for edge in lines),
+        "lines.bounds": box(vertex.co for vertex in ends),
+    }
+    bmesh.ops.delete(mesh, geom=[*lines], context="EDGES")
+    bmesh.ops.delete(mesh, geom=[vertex for vertex in mesh.verts if not vertex.link_edges], context="VERTS")
     return facts
 
 

@@ -27,8 +27,15 @@ COUNTS = {
     "primitives", "triangles", "vertices", "points", "closed", "manifold", "components", "euler", "genus",
     "boundary-edges", "boundary-loops", "crowded-edges", "misoriented-edges", "degenerate-triangles", "meshes",
     "nodes", "materials", "images",
-    "draw-calls", "drawn-triangles", "bytes", "blake3",
+    "draw-calls", "drawn-triangles", "segments", "drawn-segments", "drawn-vertices", "bytes", "blake3",
+    "lines.curves", "lines.closed-curves", "lines.segments", "lines.vertices",
 }  # fmt: skip
+MEASURES = {"bounds", "area", "volume", "acmr", "atvr", "lines.length", "lines.bounds"}
+REQUIRED_OF_LINES = (
+    "lines.curves", "lines.closed-curves", "lines.segments", "lines.vertices", "lines.length", "lines.bounds",
+)  # fmt: skip
+# What a shape without triangles has none of, so that no tool speaks about it.
+OF_SURFACES = {"area", "volume", "centroid", "inertia", "genus", "boundary-loops"}
 REQUIRED_OF_SHAPE = (
     "primitives", "triangles", "vertices", "points", "bounds", "area", "volume", "centroid", "inertia",
     "inertia-of", "closed", "manifold", "components", "euler", "genus", "boundary-edges", "boundary-loops",
@@ -41,6 +48,9 @@ REQUIRED_OF_TOTALS = (
 # Profile `core` must hold these whatever the report says. A normal of unit length in single precision is
 # off by about 1e-7 a component.
 REPEATS = "repeated-triangles"
+# Tools that split a mesh into its primitives count the vertices that several share once for each. No report
+# says that number: it is counted in the file, and the tools are held against that.
+DRAWN = "drawn-vertices"
 DEMANDS = {
     "validator-errors": 0,
     "validator-warnings": 0,
@@ -58,6 +68,7 @@ class Scale:
     reach: float
     area: float
     volume: float
+    length: float
 
     @classmethod
     def of(cls, claims: Facts) -> Scale:
@@ -66,6 +77,7 @@ class Scale:
             reach=max(map(abs, flat(claims.get("bounds", {}))), default=0.0),
             area=abs(number(claims.get("area"))),
             volume=abs(number(claims.get("volume"))),
+            length=abs(number(claims.get("lines.length"))),
         )
 
     def allowed(self, fact: str, tool: str) -> float:
@@ -77,6 +89,8 @@ class Scale:
         volume_error = precision * (self.volume + self.area * self.reach)
         return {
             "bounds": COORDINATE * self.reach,
+            "lines.bounds": COORDINATE * self.reach,
+            "lines.length": precision * self.length,
             "area": precision * self.area,
             "volume": volume_error,
             "closed-volume": volume_error,
@@ -91,13 +105,16 @@ class Scale:
 
 def compare(asset: str, report: Facts, measured: list[Measured]) -> list[Finding]:
     """Every finding for one asset."""
+    report = {**report, "shapes": {name: with_lines(shape) for name, shape in report.get("shapes", {}).items()}}
     findings = list(missing(asset, report))
-    claimed = with_repeats(report.get("shapes", {}), measured)
+    claimed = with_counted(report["shapes"], measured)
     for one in measured:
         if one.error is not None:
             findings.append(failure(asset, one.tool, one.error))
             continue
-        totals = {**report.get("totals", {}), **report.get("file", {})}
+        totals = {"segments": 0, "drawn-segments": 0, **report.get("totals", {}), **report.get("file", {})}
+        for other in measured:
+            totals |= {fact: value for fact, value in other.totals.items() if fact == DRAWN}
         findings += facts(asset, "totals", totals, one.tool, one.totals)
         findings += shapes(asset, claimed, one)
         findings += nodes(asset, report, one)
@@ -105,10 +122,21 @@ def compare(asset: str, report: Facts, measured: list[Measured]) -> list[Finding
     return findings + list(unmeasured(asset, report, findings))
 
 
-def with_repeats(claimed: dict[str, Facts], measured: list[Measured]) -> dict[str, Facts]:
-    """The claims, with the number of triangles that lie on another one, which Blender's import drops."""
-    counts = {name: shape.get(REPEATS, 0) for one in measured for name, shape in one.shapes.items() if REPEATS in shape}
-    return {name: {**claims, REPEATS: counts.get(name, 0)} for name, claims in claimed.items()}
+def with_lines(claims: Facts) -> Facts:
+    """The claims, those about lines beside the others."""
+    return {**claims, **{f"lines.{fact}": value for fact, value in (claims.get("lines") or {}).items()}}
+
+
+def with_counted(claimed: dict[str, Facts], measured: list[Measured]) -> dict[str, Facts]:
+    """The claims, with what is counted in the file alone.
+
+    These are triangles that lie on another one, which Blender's import drops, and vertices by primitive.
+    """
+    counted: dict[str, Facts] = {name: {REPEATS: 0} for name in claimed}
+    for one in measured:
+        for name in set(claimed) & set(one.shapes):
+            counted[name] |= {fact: one.shapes[name][fact] for fact in (REPEATS, DRAWN) if fact in one.shapes[name]}
+    return {name: {**claims, **counted[name]} for name, claims in claimed.items()}
 
 
 def shapes(asset: str, claimed: dict[str, Facts], one: Measured) -> Iterator[Finding]:
@@ -159,7 +187,7 @@ def claim_for(fact: str, claims: Facts) -> tuple[str, Any] | None:
         return (rest, claims.get(rest)) if claims.get("inertia-of") == kind else None
     if kind in ("closed", "manifold") and rest:
         return (rest, claims.get(rest)) if claims.get(kind) else None
-    known = fact in COUNTS or fact in ("bounds", "area", "volume", "acmr", "atvr")
+    known = fact in COUNTS or fact in MEASURES
     return (fact, claims[fact]) if known and fact in claims else None
 
 
@@ -194,13 +222,18 @@ def missing(asset: str, report: Facts) -> Iterator[Finding]:
     """A finding for each claim that every report must make."""
     demands = [("totals", REQUIRED_OF_TOTALS, report.get("totals", {}))]
     demands += [("file", ("name", "bytes", "blake3"), report.get("file", {}))]
-    demands += [(f"shapes.{name}", REQUIRED_OF_SHAPE, claims) for name, claims in report.get("shapes", {}).items()]
+    demands += [(f"shapes.{name}", required(claims), claims) for name, claims in report.get("shapes", {}).items()]
     if not report.get("shapes"):
         yield failure(asset, "report", "the report names no shape")
     for place, wanted, claims in demands:
         for fact in wanted:
             if fact not in claims:
                 yield failure(asset, "report", f"`{place}.{fact}` is missing", f"{place}.{fact}")
+
+
+def required(claims: Facts) -> tuple[str, ...]:
+    """What a shape must claim."""
+    return REQUIRED_OF_SHAPE + (REQUIRED_OF_LINES if "lines" in claims else ())
 
 
 def deviations(asset: str, claimed: dict[str, Facts]) -> Iterator[Finding]:
@@ -224,7 +257,9 @@ def unmeasured(asset: str, report: Facts, findings: list[Finding]) -> Iterator[F
         silent = {"inertia-of", "deviation"}
         if not claims.get("manifold"):
             silent |= {"volume", "genus", "boundary-loops"}
-        for fact in REQUIRED_OF_SHAPE:
+        if not claims.get("triangles"):
+            silent |= OF_SURFACES
+        for fact in required(claims):
             place = f"shapes.{name}.{fact}"
             if fact in claims and fact not in silent and place not in spoken:
                 yield failure(asset, "report", f"no tool measured `{place}`", place)

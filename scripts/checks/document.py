@@ -1,6 +1,6 @@
-"""A plain reader of glTF files for the checks that want arrays: triangles, attributes, node matrices.
+"""A plain reader of glTF files for the checks that want arrays: triangles, lines, attributes, node matrices.
 
-Reads what profile `core` may hold (float attributes, triangles, buffers in the .glb, in a `data:` address
+Reads what profile `core` may hold (float attributes, triangles, lines, buffers in the .glb, in a `data:` address
 or beside the file) and refuses the rest by name. Not a validator.
 """
 
@@ -23,16 +23,40 @@ if TYPE_CHECKING:
 
 COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
-TRIANGLES = 4
+LINES, TRIANGLES = 1, 4
 
 
 @dataclass(frozen=True)
 class Primitive:
-    """One draw call: attributes by glTF name, triangles as vertex indices of shape (n, 3)."""
+    """One draw call: attributes by glTF name; indices of shape (n, 3) for triangles, (n, 2) for lines."""
 
     attributes: dict[str, NDArray[Any]]
-    triangles: NDArray[np.int64]
+    indices: NDArray[np.int64]
     material: int | None
+    cloud: int
+    """The accessor of its positions: primitives that name one share their vertices."""
+
+    @property
+    def triangles(self) -> NDArray[np.int64]:
+        """Its triangles; it has none where it holds lines."""
+        return self.indices if self.indices.shape[1] == 3 else np.zeros((0, 3), np.int64)
+
+
+@dataclass(frozen=True)
+class Cloud:
+    """Vertices with what is drawn between them, of primitives of one kind."""
+
+    positions: NDArray[np.float64]
+    indices: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, primitives: list[Primitive], corners: int) -> Cloud:
+        """The primitives together; vertices that some of them share stand once."""
+        clouds = {p.cloud: p.attributes["POSITION"] for p in primitives}
+        starts = dict(zip(clouds, np.cumsum([0, *map(len, clouds.values())]), strict=False))
+        positions = [np.zeros((0, 3)), *(cloud.astype(float) for cloud in clouds.values())]
+        indices = [np.zeros((0, corners), np.int64), *(p.indices + starts[p.cloud] for p in primitives)]
+        return cls(np.concatenate(positions), np.concatenate(indices))
 
 
 @dataclass(frozen=True)
@@ -42,17 +66,35 @@ class Mesh:
     name: str
     primitives: list[Primitive]
 
-    @cached_property
-    def positions(self) -> NDArray[np.float64]:
-        """All vertices as written, primitive after primitive; shared accessors count once a primitive."""
-        return np.concatenate([p.attributes["POSITION"] for p in self.primitives]).astype(float)
+    @property
+    def surfaces(self) -> list[Primitive]:
+        """The primitives of triangles."""
+        return [p for p in self.primitives if p.indices.shape[1] == 3]
 
     @cached_property
+    def lines(self) -> Cloud:
+        """All lines with their vertices."""
+        return Cloud.of([p for p in self.primitives if p.indices.shape[1] == 2], 2)
+
+    @cached_property
+    def surface(self) -> Cloud:
+        """All triangles with their vertices."""
+        return Cloud.of(self.surfaces, 3)
+
+    @property
+    def positions(self) -> NDArray[np.float64]:
+        """The vertices of triangles, as written."""
+        return self.surface.positions
+
+    @property
     def triangles(self) -> NDArray[np.int64]:
         """All triangles, indices into `positions`."""
-        starts = np.cumsum([0] + [len(p.attributes["POSITION"]) for p in self.primitives])
-        parts = [p.triangles + start for p, start in zip(self.primitives, starts, strict=False)]
-        return np.concatenate(parts)
+        return self.surface.indices
+
+    @property
+    def places(self) -> NDArray[np.float64]:
+        """The vertices of triangles and of lines."""
+        return np.concatenate([self.surface.positions, self.lines.positions])
 
     @cached_property
     def merged(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -109,16 +151,16 @@ class Document:
 
     def _primitive(self, primitive: dict[str, Any]) -> Primitive:
         mode = primitive.get("mode", TRIANGLES)
-        if mode != TRIANGLES:
-            message = f"primitive mode {mode} is not triangles"
+        if mode not in (LINES, TRIANGLES):
+            message = f"primitive mode {mode} is neither triangles nor lines"
             raise ValueError(message)
         attributes = {name: self.accessor(i) for name, i in primitive["attributes"].items()}
         if "indices" in primitive:
             indices = self.accessor(primitive["indices"]).ravel()
         else:
             indices = np.arange(len(attributes["POSITION"]))
-        triangles = indices.astype(np.int64).reshape(-1, 3)
-        return Primitive(attributes, triangles, primitive.get("material"))
+        indices = indices.astype(np.int64).reshape(-1, 2 if mode == LINES else 3)
+        return Primitive(attributes, indices, primitive.get("material"), primitive["attributes"]["POSITION"])
 
     @cached_property
     def placed(self) -> list[tuple[dict[str, Any], NDArray[np.float64]]]:
@@ -141,6 +183,29 @@ class Document:
     def worlds(self) -> dict[str, NDArray[np.float64]]:
         """World matrices by node name."""
         return {node["name"]: world for node, world in self.placed if "name" in node}
+
+
+def without_lines(path: Path) -> bytes:
+    """The .glb without its primitives of lines, for tools that misread them; nodes of nothing else show no mesh."""
+    document, binary = split(path.read_bytes())
+    kept: dict[int, int] = {}
+    meshes = []
+    for number, mesh in enumerate(document.get("meshes", [])):
+        mesh["primitives"] = [p for p in mesh["primitives"] if p.get("mode", TRIANGLES) != LINES]
+        if mesh["primitives"]:
+            kept[number] = len(meshes)
+            meshes.append(mesh)
+    document["meshes"] = meshes
+    for node in document.get("nodes", []):
+        mesh = kept.get(node.pop("mesh", -1))
+        if mesh is not None:
+            node["mesh"] = mesh
+    if not meshes:
+        del document["meshes"]
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(binary), 0x004E4942) + binary
+    return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
 
 
 def split(data: bytes) -> tuple[dict[str, Any], bytes]:

@@ -2,29 +2,45 @@
 
 from __future__ import annotations
 
+import tempfile
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import pymeshlab
 
 from checks import finding
-from checks.document import Document, Mesh
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from checks.document import Document, Mesh, without_lines
 
 TOOL = "meshlab"
 VERSION = version("pymeshlab")
 
 
 def measure(path: Path) -> finding.Measured:
-    """The facts of one file: totals by MeshLab's own reader, shapes from arrays with merged positions."""
-    opened = pymeshlab.MeshSet()
-    opened.load_new_mesh(str(path))
-    layers = [opened.mesh(i) for i in range(opened.mesh_number())]
-    totals = {"drawn-triangles": sum(layer.face_number() for layer in layers)}
-    shapes = {mesh.name: shape(mesh) for mesh in Document(path).meshes}
+    """The facts of one file: totals by MeshLab's own reader, shapes from arrays with merged positions.
+
+    Lines are taken out before: MeshLab reads their indices as those of triangles.
+    """
+    meshes = Document(path).meshes
+    surfaces = [mesh for mesh in meshes if mesh.surfaces]
+    totals = {"drawn-triangles": drawn(path, any(len(mesh.lines.indices) for mesh in meshes)) if surfaces else 0}
+    shapes = {mesh.name: shape(mesh) if mesh.surfaces else {} for mesh in meshes}
+    for mesh in surfaces:
+        if len(mesh.lines.indices):
+            del shapes[mesh.name]["bounds"]
     return finding.Measured(TOOL, VERSION, str(path), totals, shapes)
+
+
+def drawn(path: Path, has_lines: bool) -> int:
+    """The triangles that MeshLab's own reader finds."""
+    opened = pymeshlab.MeshSet()
+    with tempfile.TemporaryDirectory() as folder:
+        shown = path
+        if has_lines:
+            shown = Path(folder) / "surfaces.glb"
+            shown.write_bytes(without_lines(path))
+        opened.load_new_mesh(str(shown))
+    return sum(opened.mesh(i).face_number() for i in range(opened.mesh_number()))
 
 
 def shape(mesh: Mesh) -> dict[str, Any]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import trimesh
 
 from checks import finding
+from checks.document import Document, without_lines
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -18,15 +20,21 @@ TOOL = "trimesh"
 
 
 def measure(path: Path) -> finding.Measured:
-    """The facts of one file. A mesh of several primitives becomes several geometries, joined again here."""
-    scene = trimesh.load_scene(path, process=False, merge_primitives=True)
-    low, high = scene.bounds
-    totals = {
-        "bounds": {"min": low.tolist(), "max": high.tolist()},
-        "meshes": len(scene.geometry),
-        "triangles": sum(len(mesh.faces) for mesh in scene.geometry.values()),
-    }
+    """The facts of one file. A mesh of several primitives becomes several geometries, joined again here.
+
+    Lines are taken out before: trimesh reads pairs of vertices as one strip. So it is silent on what has lines.
+    """
+    lines = {mesh.name for mesh in Document(path).meshes if len(mesh.lines.indices)}
+    opened = BytesIO(without_lines(path)) if lines else path
+    scene = trimesh.load_scene(opened, file_type="glb" if lines else None, process=False, merge_primitives=True)
+    totals: dict[str, Any] = {"triangles": sum(len(mesh.faces) for mesh in scene.geometry.values())}
+    if not lines:
+        low, high = scene.bounds
+        totals |= {"bounds": {"min": low.tolist(), "max": high.tolist()}, "meshes": len(scene.geometry)}
     shapes = {name: shape(mesh) for name, mesh in scene.geometry.items()}
+    for name in lines & set(shapes):
+        del shapes[name]["bounds"]
+    shapes |= {name: {} for name in lines - set(shapes)}
     nodes = {name: scene.graph[name][0].T.ravel().tolist() for name in scene.graph.nodes}
     return finding.Measured(TOOL, trimesh.__version__, str(path), totals, shapes, nodes)
 
@@ -37,7 +45,7 @@ def shape(raw: trimesh.Trimesh) -> dict[str, Any]:
     mesh.merge_vertices(merge_tex=True, merge_norm=True)
     facts: dict[str, Any] = {
         "triangles": len(raw.faces),
-        "vertices": len(raw.vertices),
+        "drawn-vertices": len(raw.vertices),
         "points": len(mesh.vertices),
         "bounds": {"min": mesh.bounds[0].tolist(), "max": mesh.bounds[1].tolist()},
         "area": float(mesh.area),

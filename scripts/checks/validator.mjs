@@ -39,7 +39,7 @@ function counts(info) {
   if (info === undefined || info.drawCallCount === undefined) return {};
   return {
     'triangles': info.totalTriangleCount,
-    'vertices': info.totalVertexCount,
+    'drawn-vertices': info.totalVertexCount,
     'primitives': info.drawCallCount,
     'materials': info.materialCount,
     'images': (info.resources ?? []).filter((resource) => resource.image !== undefined).length,

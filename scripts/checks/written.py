@@ -17,7 +17,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from checks import finding
-from checks.document import Document, Mesh, Primitive
+from checks.document import Cloud, Document, Mesh, Primitive
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -49,17 +49,25 @@ def count(document: Document) -> dict[str, Any]:
     totals["meshes"] = len(meshes)
     totals["primitives"] = sum(len(mesh.primitives) for mesh in meshes)
     totals["triangles"] = sum(len(mesh.triangles) for mesh in meshes)
-    totals["vertices"] = sum(len(mesh.positions) for mesh in meshes)
+    totals["segments"] = sum(len(mesh.lines.indices) for mesh in meshes)
+    totals["vertices"] = sum(len(mesh.places) for mesh in meshes)
+    totals["drawn-vertices"] = sum(drawn_vertices(mesh) for mesh in meshes)
     totals["draw-calls"] = sum(len(meshes[i].primitives) for i, _ in document.instances)
     totals["drawn-triangles"] = sum(len(meshes[i].triangles) for i, _ in document.instances)
+    totals["drawn-segments"] = sum(len(meshes[i].lines.indices) for i, _ in document.instances)
     return totals
+
+
+def drawn_vertices(mesh: Mesh) -> int:
+    """Vertices by primitive: those that several share count once for each, as tools count that split a mesh."""
+    return sum(len(p.attributes["POSITION"]) for p in mesh.primitives)
 
 
 def world_bounds(document: Document) -> dict[str, list[float]]:
     """The box of all instances in world coordinates."""
     corners = []
     for index, world in document.instances:
-        points = document.meshes[index].merged[0] @ world[:3, :3].T + world[:3, 3]
+        points = document.meshes[index].places @ world[:3, :3].T + world[:3, 3]
         corners += [points.min(axis=0), points.max(axis=0)]
     box = np.array(corners)
     return {"min": box.min(axis=0).tolist(), "max": box.max(axis=0).tolist()}
@@ -73,10 +81,11 @@ def shape(mesh: Mesh) -> dict[str, Any]:
         "primitives": len(mesh.primitives),
         "triangles": len(mesh.triangles),
         "vertices": len(mesh.positions),
+        "drawn-vertices": sum(len(p.attributes["POSITION"]) for p in mesh.surfaces),
         "points": len(points),
-        "bounds": {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()},
-        "closed": edges.closed,
-        "manifold": edges.paired and one_fan_each(len(points), triangles, edges),
+        "bounds": box(mesh.places),
+        "closed": len(triangles) > 0 and edges.closed,
+        "manifold": len(triangles) > 0 and edges.paired and one_fan_each(len(points), triangles, edges),
         "components": components(triangles, edges),
         "euler": len(points) - edges.distinct + len(triangles),
         "boundary-edges": edges.boundary,
@@ -84,12 +93,37 @@ def shape(mesh: Mesh) -> dict[str, Any]:
         "misoriented-edges": edges.misoriented,
         "degenerate-triangles": degenerate(points, triangles),
         "repeated-triangles": len(triangles) - len(np.unique(np.sort(triangles, axis=1), axis=0)),
-        "largest-normal-error": max(normal_error(p) for p in mesh.primitives),
-        "unused-vertices": sum(unused(p) for p in mesh.primitives),
+        "largest-normal-error": max((normal_error(p) for p in mesh.surfaces), default=0.0),
+        "unused-vertices": unused(mesh.surface) + unused(mesh.lines),
         "attributes": sorted({name for p in mesh.primitives for name in p.attributes}),
     }
     facts["acmr"], facts["atvr"] = cache_figures(mesh)
+    facts.update(line_facts(mesh.lines))
     return facts
+
+
+def line_facts(lines: Cloud) -> dict[str, Any]:
+    """The facts of the lines of one mesh; none where it has none. Lines hang together at shared vertices."""
+    ends = lines.indices
+    if not len(ends):
+        return {}
+    graph = coo_array((np.ones(len(ends), np.int8), (ends[:, 0], ends[:, 1])), shape=(len(lines.positions),) * 2)
+    count, label = connected_components(graph, directed=False)
+    joined = np.bincount(ends.ravel(), minlength=len(lines.positions))
+    steps = lines.positions[ends[:, 1]] - lines.positions[ends[:, 0]]
+    return {
+        "lines.curves": int(count),
+        "lines.closed-curves": int(count - len(np.unique(label[joined != 2]))),
+        "lines.segments": len(ends),
+        "lines.vertices": len(lines.positions),
+        "lines.length": float(np.linalg.norm(steps, axis=1).sum()),
+        "lines.bounds": box(lines.positions),
+    }
+
+
+def box(points: NDArray[np.float64]) -> dict[str, list[float]]:
+    """The smallest box around points."""
+    return {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
 
 
 class Edges:
@@ -180,18 +214,19 @@ def normal_error(primitive: Primitive) -> float:
     return float(np.abs(np.linalg.norm(normals.astype(float), axis=1) - 1).max())
 
 
-def unused(primitive: Primitive) -> int:
-    """Vertices that no triangle of the primitive uses."""
-    used = np.zeros(len(primitive.attributes["POSITION"]), bool)
-    used[primitive.triangles.ravel()] = True
+def unused(cloud: Cloud) -> int:
+    """Vertices that nothing uses."""
+    used = np.zeros(len(cloud.positions), bool)
+    used[cloud.indices.ravel()] = True
     return int((~used).sum())
 
 
 def cache_figures(mesh: Mesh) -> tuple[float, float]:
     """(ACMR, ATVR) of the mesh's primitives: vertices shaded for each triangle, and for each vertex."""
-    shaded = sum(misses(p.triangles) for p in mesh.primitives)
-    vertices = sum(len(p.attributes["POSITION"]) for p in mesh.primitives)
-    return shaded / len(mesh.triangles), shaded / vertices
+    if not mesh.surfaces:
+        return 0.0, 0.0
+    shaded = sum(misses(p.triangles) for p in mesh.surfaces)
+    return shaded / len(mesh.triangles), shaded / len(mesh.positions)
 
 
 def misses(triangles: NDArray[np.int64]) -> int:

@@ -13,6 +13,7 @@ mod formula_curve;
 mod import;
 mod material;
 mod node;
+mod polygon;
 mod primitive;
 mod profile;
 mod ruled;
@@ -35,6 +36,8 @@ pub struct Built {
     pub model: Model,
     /// Where each shape is defined, by handle.
     pub places: Vec<Span>,
+    /// Where the faces of each shape are written, by handle; none for shapes whose faces are not.
+    pub faces: Vec<Vec<Span>>,
     /// What a person should know though nothing is wrong.
     pub warnings: Vec<Diagnostic>,
 }
@@ -46,11 +49,11 @@ pub struct Built {
 pub fn model(spec: &Spec, name: &str, files: &dyn Files) -> Result<Built, Vec<Diagnostic>> {
     let mut builder = Builder::new(spec, name, files);
     builder.build();
-    let Builder { model, places, reports, .. } = builder;
+    let Builder { model, places, faces, reports, .. } = builder;
     if reports.iter().any(|report| report.severity == Severity::Error) {
         return Err(reports);
     }
-    Ok(Built { model, places, warnings: reports })
+    Ok(Built { model, places, faces, warnings: reports })
 }
 
 /// Builds one curve of a document; none when there is no such curve.
@@ -69,6 +72,9 @@ struct Builder<'a> {
     files: &'a dyn Files,
     model: Model,
     places: Vec<Span>,
+    faces: Vec<Vec<Span>>,
+    /// Where the faces of the shape that is being built are written.
+    face_places: Vec<Span>,
     reports: Vec<Diagnostic>,
     shapes: IndexMap<String, Option<ShapeHandle>>,
     materials: IndexMap<String, Option<MaterialHandle>>,
@@ -98,6 +104,8 @@ impl<'a> Builder<'a> {
             files,
             model,
             places: Vec::new(),
+            faces: Vec::new(),
+            face_places: Vec::new(),
             reports: Vec::new(),
             shapes: IndexMap::new(),
             materials: IndexMap::new(),

@@ -1,13 +1,12 @@
 //! Shapes of a document into recipes.
 
-use glam::{DAffine3, DMat3, DVec2, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::primitive::primitive;
 use super::profile::show;
 use super::{Builder, placement};
 use crate::geometry::curve::{AnyCurve, Curve as _, Side};
 use crate::geometry::mesh;
-use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::tessellate::{Extrusion, Revolution, Station, Sweep};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
@@ -38,10 +37,12 @@ impl Builder<'_> {
     fn shape(&mut self, name: &str, definition: &ShapeDefinition, span: Span) -> Option<ShapeHandle> {
         let options = self.options(&definition.options);
         let (recipe, center) = self.recipe(name, &definition.kind, span)?;
+        let faces = std::mem::take(&mut self.face_places);
         let mut options = options?;
         options.placement *= DAffine3::from_translation(center);
         self.model.shapes.push(Shape { name: name.to_owned(), recipe, options });
         self.places.push(span);
+        self.faces.push(faces);
         Some(ShapeHandle(mesh::index(self.model.shapes.len()) - 1))
     }
 
@@ -98,6 +99,13 @@ impl Builder<'_> {
             Kind::Sweep(sweep) => self.sweep(sweep).map(here),
             Kind::Ruled(ruled) => self.ruled(ruled).map(here),
             Kind::Translational(moved) => self.translational(moved).map(here),
+            Kind::Sheet(sheet) => self.sheet(sheet).map(here),
+            Kind::Polygon(polygon) => self.polygon(polygon, span).map(here),
+            Kind::Wire(wire) => {
+                let curves: Vec<_> = wire.curves.iter().map(|curve| self.curve_of(curve)).collect();
+                let curves: Option<Vec<_>> = curves.into_iter().collect();
+                curves.map(Recipe::Wire).map(here)
+            }
             Kind::Mesh(mesh) => self.mesh(mesh, span).map(here),
             Kind::Import(import) => self.import(import, span).map(here),
             Kind::Copy(copy) => {
@@ -218,30 +226,6 @@ impl Builder<'_> {
                 .help("make the section smaller or the bend wider: beyond the center of the bend the surface folds over itself");
             self.report(report);
         }
-    }
-
-    fn mesh(&mut self, mesh: &spec::Mesh, span: Span) -> Option<Recipe> {
-        let mut polygons = PolygonMesh {
-            points: mesh.points.iter().map(|point| point.value).collect(),
-            has_smoothing: mesh.smoothing_groups.is_some(),
-            ..PolygonMesh::default()
-        };
-        for (index, face) in mesh.faces.iter().enumerate() {
-            let smoothing = mesh.smoothing_groups.as_ref().map_or(0, |groups| groups[index]);
-            polygons.push_face(&[face.value.as_slice()], None, smoothing);
-        }
-        if let Some(uvs) = &mesh.uvs {
-            polygons.uvs = uvs.value.iter().map(|uv| DVec2::new(uv.x, uv.y)).collect();
-            polygons.corner_uvs = match &mesh.face_uvs {
-                Some(faces) => faces.value.iter().flat_map(|face| face.value.iter().copied()).collect(),
-                None => mesh.faces.iter().flat_map(|face| face.value.iter().copied()).collect(),
-            };
-        }
-        if let Err(error) = polygons.validate() {
-            self.report(Diagnostic::error(Code::BadMesh, error.to_string()).at(span, "this mesh"));
-            return None;
-        }
-        Some(Recipe::Polygons { mesh: polygons, materials: Vec::new() })
     }
 }
 

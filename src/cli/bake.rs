@@ -234,7 +234,12 @@ fn line(target: &Path, compiled: &Compiled) -> String {
             deviation.measured.map_or_else(String::new, |found| format!(", measured {}", metres(found)));
         format!("  {how}{measured}")
     });
-    format!("{}  {} triangles  {bytes}{accuracy}", target.display(), report.totals.triangles)
+    let drawn = match (report.totals.triangles, report.totals.segments) {
+        (triangles, 0) => format!("{triangles} triangles"),
+        (0, segments) => format!("{segments} line segments"),
+        (triangles, segments) => format!("{triangles} triangles  {segments} line segments"),
+    };
+    format!("{}  {drawn}  {bytes}{accuracy}", target.display())
 }
 
 /// A length for people.

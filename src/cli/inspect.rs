@@ -7,7 +7,7 @@ use super::arguments::{Format, Inspect};
 use super::output::Printer;
 use super::project::reason;
 use crate::gltf;
-use crate::report::mesh_facts;
+use crate::report::{line_facts, mesh_facts};
 
 pub(crate) fn run(inspect: &Inspect, printer: &Printer) -> Outcome {
     let bytes = match std::fs::read(&inspect.file) {
@@ -27,10 +27,13 @@ pub(crate) fn run(inspect: &Inspect, printer: &Printer) -> Outcome {
     let mut meshes = serde_json::Map::new();
     for (index, geometry) in file.geometries.iter().enumerate() {
         let name = file.root.meshes[index].name.clone().unwrap_or_else(|| format!("mesh {index}"));
-        let facts = match mesh_facts(geometry) {
+        let mut facts = match mesh_facts(geometry) {
             Ok(facts) => serde_json::to_value(facts).unwrap_or(Value::Null),
             Err(error) => Value::from(error.to_string()),
         };
+        if let (Some(facts), Some(lines)) = (facts.as_object_mut(), line_facts(geometry)) {
+            facts.insert("lines".to_owned(), serde_json::to_value(lines).unwrap_or(Value::Null));
+        }
         meshes.insert(name, facts);
     }
     let object = json!({

@@ -5,9 +5,10 @@
 //! `core` profile requires no extension. Source: Khronos Group, glTF 2.0 Specification, 2021.
 
 mod buffer;
+mod lines;
 mod material;
 mod read;
 mod write;
 
-pub use read::{Geometry, Indices, Part, PositionBytes, Read, ReadError, read};
+pub use read::{Geometry, Indices, Lines, Part, PositionBytes, Read, ReadError, read};
 pub use write::{WriteError, Written, WrittenGeometry, write};

@@ -1,4 +1,4 @@
-//! The triangles in the bytes of a `.glb` file, for the report and for `inspect`.
+//! The triangles and lines in the bytes of a `.glb` file, for the report and for `inspect`.
 //!
 //! Finds float positions and indices of triangles; every offset and count is checked against the bytes. What stands
 //! together in the file, as our own writer has it, stays where it is; only what other writers scatter is copied.
@@ -34,8 +34,21 @@ pub struct Geometry<'a> {
     pub positions: Cow<'a, [PositionBytes]>,
     /// Triangles of all primitives, in order; every index is in range.
     pub indices: Indices<'a>,
-    /// Its primitives.
+    /// Its primitives of triangles.
     pub parts: Vec<Part>,
+    /// Its primitives of lines.
+    pub lines: Lines,
+}
+
+/// Lines of one mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Lines {
+    /// Positions, apart from those of triangles.
+    pub positions: Vec<[f32; 3]>,
+    /// Pairs of positions; every index is in range.
+    pub segments: Vec<[u32; 2]>,
+    /// For each primitive its material.
+    pub parts: Vec<Option<usize>>,
 }
 
 /// Indices as they stand in a file, little-endian.
@@ -174,9 +187,14 @@ fn geometry<'a>(root: &Root, binary: &'a [u8], mesh: usize) -> Result<Geometry<'
     let mut primitives = Vec::new();
     let mut parts = Vec::new();
     let mut vertices = 0_u32;
+    let lines = lines(root, binary, mesh)?;
     for primitive in &root.meshes[mesh].primitives {
+        if primitive.mode == Checked::Valid(Mode::Lines) {
+            continue;
+        }
         if primitive.mode != Checked::Valid(Mode::Triangles) {
-            return Err(ReadError::Unsupported(format!("a primitive of mesh {mesh} that is not triangles")));
+            let message = format!("a primitive of mesh {mesh} that is neither triangles nor lines");
+            return Err(ReadError::Unsupported(message));
         }
         let position = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
         let position = position.ok_or_else(|| ReadError::Missing(format!("POSITION of mesh {mesh}")))?;
@@ -208,8 +226,58 @@ fn geometry<'a>(root: &Root, binary: &'a [u8], mesh: usize) -> Result<Geometry<'
     let indices = gathered_indices(binary, &primitives).map_err(missing)?;
     match indices.greatest().filter(|index| *index >= vertices) {
         Some(index) => Err(missing(index)),
-        None => Ok(Geometry { positions, indices, parts }),
+        None => Ok(Geometry { positions, indices, parts, lines }),
     }
+}
+
+/// The lines of a mesh; positions that primitives share are read once.
+fn lines(root: &Root, binary: &[u8], mesh: usize) -> Result<Lines, ReadError> {
+    let mut all = Lines::default();
+    let mut clouds: Vec<(usize, u32, u32)> = Vec::new();
+    for primitive in &root.meshes[mesh].primitives {
+        if primitive.mode != Checked::Valid(Mode::Lines) {
+            continue;
+        }
+        let position = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
+        let position = position.ok_or_else(|| ReadError::Missing(format!("POSITION of mesh {mesh}")))?;
+        let known = clouds.iter().find(|(accessor, ..)| *accessor == position.value()).copied();
+        let (_, base, count) = match known {
+            Some(known) => known,
+            None => {
+                let cloud = positions(root, binary, *position)?;
+                let made = (position.value(), mesh::index(all.positions.len()), mesh::index(cloud.count));
+                let floats = |element: &[u8]| {
+                    let (words, _) = element.as_chunks::<4>();
+                    [words[0], words[1], words[2]].map(f32::from_le_bytes)
+                };
+                all.positions.extend(cloud.each(binary).map(floats));
+                clouds.push(made);
+                made
+            }
+        };
+        let ends: Vec<u32> = match primitive.indices {
+            None => (0..count).collect(),
+            Some(index) => {
+                let word = |element: &[u8]| {
+                    let mut word = [0; 4];
+                    word[..element.len()].copy_from_slice(element);
+                    u32::from_le_bytes(word)
+                };
+                indices(root, binary, index)?.each(binary).map(word).collect()
+            }
+        };
+        if let Some(beyond) = ends.iter().find(|end| **end >= count) {
+            return Err(ReadError::Vertex(mesh, *beyond));
+        }
+        let (pairs, rest) = ends.as_chunks::<2>();
+        if !rest.is_empty() {
+            let message = format!("a primitive of mesh {mesh} that does not hold whole lines");
+            return Err(ReadError::Unsupported(message));
+        }
+        all.segments.extend(pairs.iter().map(|pair| pair.map(|end| base + end)));
+        all.parts.push(primitive.material.map(|material| material.value()));
+    }
+    Ok(all)
 }
 
 /// Positions of all accessors, one after the other; those of a single tight one stay in place.

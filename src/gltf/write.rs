@@ -11,7 +11,7 @@ use gltf::json::{Accessor, Asset, Index, Mesh, Node, Root, Scene};
 use thiserror::Error;
 
 use super::buffer::{Binary, Elements, accessor};
-use super::material;
+use super::{lines, material};
 use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
 use crate::geometry::number::size;
@@ -40,6 +40,8 @@ pub struct WrittenGeometry {
     pub tolerance: Option<f64>,
     /// For each written vertex its place on the exact source; empty unless asked for.
     pub anchors: Vec<Anchor>,
+    /// For each written vertex of lines its place on the exact curve; empty unless asked for.
+    pub line_anchors: Vec<Anchor>,
 }
 
 /// What keeps a scene from being one file.
@@ -62,11 +64,19 @@ pub fn write(checked: Checked<'_>, anchors: bool) -> Result<Written, WriteError>
         root: Root { asset: asset(), ..Root::default() },
         binary: Binary { bytes: Vec::with_capacity(binary_size(checked)) },
     };
-    let shared: Vec<Shared> = scene.geometries.iter().map(|geometry| writer.geometry(geometry)).collect();
+    let shared: Vec<_> = scene
+        .geometries
+        .iter()
+        .map(|geometry| {
+            let triangles = (!geometry.mesh.triangles.is_empty()).then(|| writer.geometry(geometry));
+            (triangles, lines::shared(&mut writer.root, &mut writer.binary, &geometry.wire))
+        })
+        .collect();
     material::images(&mut writer.root, &mut writer.binary, scene);
     material::materials(&mut writer.root, scene);
     for mesh in &scene.meshes {
-        writer.mesh(checked, mesh, &shared[mesh.geometry]);
+        let (triangles, lines) = &shared[mesh.geometry];
+        writer.mesh(checked, mesh, triangles.as_ref(), lines);
     }
     writer.nodes(checked);
     let known = |(index, geometry): (usize, &Geometry)| WrittenGeometry {
@@ -74,6 +84,11 @@ pub fn write(checked: Checked<'_>, anchors: bool) -> Result<Written, WriteError>
         mesh: scene.meshes.iter().position(|mesh| mesh.geometry == index).unwrap_or(0),
         deviation: geometry.deviation,
         tolerance: geometry.tolerance,
+        line_anchors: if anchors {
+            geometry.wire.points.iter().map(|p| p.anchor).collect()
+        } else {
+            Vec::new()
+        },
         anchors: if anchors { geometry.mesh.vertices.iter().map(|v| v.anchor).collect() } else { Vec::new() },
     };
     let geometries = scene.geometries.iter().enumerate().map(known).collect();
@@ -94,7 +109,9 @@ fn binary_size(checked: Checked<'_>) -> usize {
         let tangent = if geometry.tangents.is_some() { 16 } else { 0 };
         let uv = if geometry.uv { 8 } else { 0 };
         let vertices = geometry.mesh.vertices.len();
-        vertices * (24 + tangent + uv) + geometry.mesh.triangles.len() * 3 * index_width(vertices) + 64
+        let points = geometry.wire.points.len();
+        let triangles = geometry.mesh.triangles.len() * 3 * index_width(vertices);
+        vertices * (24 + tangent + uv) + triangles + points * (12 + 2 * index_width(points)) + 128
     };
     let images: usize = scene.images.iter().map(|image| image.bytes.len() + 4).sum();
     // The header and the JSON chunk are put before: room for most, so that the bytes are not copied for it.
@@ -104,7 +121,7 @@ fn binary_size(checked: Checked<'_>) -> usize {
 }
 
 /// Bytes of an index: 0xFFFF restarts primitives and is no vertex.
-fn index_width(vertices: usize) -> usize {
+pub(super) fn index_width(vertices: usize) -> usize {
     if vertices <= 0xFFFF { 2 } else { 4 }
 }
 
@@ -151,10 +168,16 @@ impl Writer {
         Shared { position, normal, tangent, uv, indices }
     }
 
-    fn mesh(&mut self, checked: Checked<'_>, mesh: &crate::scene::MeshUse, shared: &Shared) {
+    fn mesh(
+        &mut self,
+        checked: Checked<'_>,
+        mesh: &crate::scene::MeshUse,
+        shared: Option<&Shared>,
+        lines: &[lines::Lines],
+    ) {
         let scene = checked.scene();
         let runs = &scene.geometries[mesh.geometry].mesh.runs;
-        let primitive = |(run, indices): (&mesh::Run, &Index<Accessor>)| {
+        let primitive = |shared: &Shared, run: &mesh::Run, indices: &Index<Accessor>| {
             let material = mesh.materials[run.origin as usize];
             let worn = material.map(|index| &scene.materials[index]);
             let bumps = worn.is_some_and(|material| material.normal_texture.is_some());
@@ -177,7 +200,10 @@ impl Writer {
                 targets: None,
             }
         };
-        let primitives = runs.iter().zip(&shared.indices).map(primitive).collect();
+        let triangles = shared.into_iter().flat_map(|shared| {
+            runs.iter().zip(&shared.indices).map(move |(run, indices)| primitive(shared, run, indices))
+        });
+        let primitives = triangles.chain(lines.iter().map(|lines| lines.primitive(mesh))).collect();
         self.root.push(Mesh {
             extensions: None,
             extras: None,
@@ -256,7 +282,7 @@ impl Writer {
     }
 }
 
-fn put<const N: usize>(bytes: &mut Vec<u8>, numbers: [f32; N]) {
+pub(super) fn put<const N: usize>(bytes: &mut Vec<u8>, numbers: [f32; N]) {
     // Zero has one form, so that equal positions are equal bytes.
     let words = numbers.map(|number| (number + 0.0).to_le_bytes());
     bytes.extend_from_slice(words.as_flattened());

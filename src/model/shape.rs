@@ -3,8 +3,11 @@
 use glam::{DAffine3, DVec2, DVec3};
 
 use super::MaterialHandle;
+use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh::PolygonMesh;
-use crate::geometry::tessellate::{Extrusion, FlatPlane, Geodesic, Patchwork, Revolution, RoundedBox, Sweep};
+use crate::geometry::tessellate::{
+    Extrusion, FlatPlane, Geodesic, Patchwork, Revolution, RoundedBox, Sheet, Sweep,
+};
 
 /// Index of a shape in its model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -45,6 +48,10 @@ pub enum Recipe {
     Sweep(Sweep),
     /// Surfaces by their parameters, alone or joined, with flat ends.
     Patches(Patchwork),
+    /// A flat face inside closed curves.
+    Sheet(Sheet),
+    /// Curves as lines.
+    Wire(Vec<AnyCurve>),
     /// Polygons, written out or imported. For each of their materials the model's, if it has one.
     Polygons {
         /// The polygons.

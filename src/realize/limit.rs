@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::RealizeError;
-use crate::geometry::mesh::{Mesh, Vertex};
+use crate::geometry::mesh::{Mesh, Vertex, Wire, WirePoint};
 use crate::model::{Limits, Model, Recipe};
 
 /// What a mesh takes.
@@ -25,6 +25,16 @@ impl Cost {
         let points = mesh.points.len() as u64;
         let vertex = size_of::<Vertex>() as u64 + 32;
         Self { triangles, vertices, memory: triangles * (12 + 12) + vertices * vertex + points * 24 }
+    }
+
+    /// Segments count as triangles: both are what a renderer draws.
+    pub(super) fn of_wire(wire: &Wire) -> Self {
+        let points = wire.points.len() as u64;
+        Self {
+            triangles: points,
+            vertices: points,
+            memory: points * (size_of::<WirePoint>() as u64 + 12 + 8),
+        }
     }
 
     pub(super) fn times(self, count: u64) -> Self {

@@ -63,7 +63,27 @@ pub struct Realized {
     /// For each geometry of the scene, the shape it comes from.
     pub shapes: Vec<ShapeHandle>,
     /// Things a person should know, each with its shape.
-    pub notes: Vec<(ShapeHandle, String)>,
+    pub notes: Vec<(ShapeHandle, Note)>,
+}
+
+/// What a person should know of the faces of a shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Note {
+    /// Faces with two corners on one place and no others: they are left out.
+    Dropped(Faces),
+    /// Faces whose corners lie on one line: they are kept for the edges they share.
+    Flat(Faces),
+    /// Faces that cross themselves: they fold.
+    Crossing(Faces),
+}
+
+/// Some faces of a shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Faces {
+    /// The first of them.
+    pub first: u32,
+    /// How many there are.
+    pub count: usize,
 }
 
 /// Makes the scene of a model.

@@ -45,7 +45,7 @@ fn make_all(
             shown.iter().filter(|(shape, _)| shape == handle).map(|(_, material)| *material).collect();
         let uv = shape::wants_uv(model, *handle, &overrides);
         let mut made = maker.make(*handle, uv).map_err(|error| (*handle, error))?;
-        spent.add(Cost::of(&made.mesh));
+        spent.add(Cost::of(&made.mesh).plus(Cost::of_wire(&made.wire)));
         shape::to_metres(&mut made, &model.frame);
         Ok(shape::group_by_material(made))
     };
@@ -89,13 +89,14 @@ fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Ma
     for (made, handle) in made.into_iter().zip(shapes) {
         let overrides: Vec<_> =
             shown.iter().filter(|(shape, _)| shape == handle).map(|(_, material)| *material).collect();
-        notes.extend(made.notes.iter().map(|note| (*handle, note.clone())));
+        notes.extend(&made.notes);
         scene.geometries.push(Geometry {
             name: model.shape(*handle).name.clone(),
             uv: shape::wants_uv(model, *handle, &overrides),
             tolerance: made.tolerance,
             deviation: made.deviation,
             mesh: made.mesh,
+            wire: made.wire,
             tangents: None,
         });
     }

@@ -4,14 +4,14 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::limit::{self, Cost};
 use super::source::source_count;
-use super::{Options, RealizeError};
+use super::{Faces, Note, Options, RealizeError};
 use crate::geometry::mesh;
 use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
-use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex};
+use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex, Wire};
 use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::{
     Detail, Deviation, SurfaceDensity, TessellateError, Tessellation, cuboid, extrude, geodesic, patchwork,
-    plane, revolve, rounded_box, sweep,
+    plane, revolve, rounded_box, sheet, sweep, wire,
 };
 use crate::model::{Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing, UvMode};
 
@@ -19,11 +19,13 @@ use crate::model::{Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smo
 #[derive(Clone, Debug)]
 pub(super) struct Made {
     pub(super) mesh: Mesh,
-    /// Material of each origin of the mesh's runs.
+    pub(super) wire: Wire,
+    /// Material of each origin of the mesh's runs and the wire's strands.
     pub(super) materials: Vec<Option<MaterialHandle>>,
     pub(super) deviation: Deviation,
     pub(super) tolerance: Option<f64>,
-    pub(super) notes: Vec<String>,
+    /// What a person should know, each with the part it is about.
+    pub(super) notes: Vec<(ShapeHandle, Note)>,
 }
 
 /// Makes shapes of one model.
@@ -90,7 +92,7 @@ impl<'a> Maker<'a> {
                 self.assembly(parts, wanted.within(&shape.options.placement), next_source)?
             }
             recipe => {
-                let mut made = self.leaf(shape, wanted)?;
+                let mut made = self.leaf(handle, wanted)?;
                 shift_sources(&mut made, *next_source);
                 *next_source += source_count(recipe);
                 made
@@ -111,9 +113,10 @@ impl<'a> Maker<'a> {
 
     fn leaf(
         &self,
-        shape: &Shape,
+        handle: ShapeHandle,
         Inherited { tolerance, rounding, uv }: Inherited,
     ) -> Result<Made, RealizeError> {
+        let shape = self.model.shape(handle);
         let stretch = stretch(&shape.options.placement.matrix3);
         let tolerance = self.tolerance(shape, tolerance);
         // What rounding will add is taken off beforehand, as long as it leaves half.
@@ -133,6 +136,7 @@ impl<'a> Maker<'a> {
         };
         let surface = |made: Tessellation| Made {
             mesh: made.mesh,
+            wire: Wire::default(),
             materials: vec![None],
             deviation: made.deviation,
             // In the space before the placement, which scales it back with the rest.
@@ -148,27 +152,43 @@ impl<'a> Maker<'a> {
             Recipe::Extrusion(extrusion) => extrude(extrusion, &detail),
             Recipe::Sweep(path) => sweep(path, &detail),
             Recipe::Patches(patches) => patchwork(patches, &detail),
+            Recipe::Sheet(face) => sheet(face, &detail),
             Recipe::Polygons { mesh, materials } => {
-                return self.finished(shape, self.polygons(shape, mesh, materials)?);
+                return self.finished(shape, self.polygons(handle, mesh, materials)?);
+            }
+            Recipe::Wire(curves) => {
+                let made = wire(curves, &detail).map(|(wire, deviation)| Made {
+                    wire,
+                    ..surface(Tessellation { mesh: Mesh::default(), deviation })
+                });
+                return self.finished(shape, made.map_err(|error| self.in_terms_of_limits(error))?);
             }
             Recipe::Assembly(_) => Ok(Tessellation { mesh: Mesh::default(), deviation: Deviation::NONE }),
         };
-        let made = made.map_err(|error| match error {
-            TessellateError::TooMany { needed, .. } => limit::in_terms_of(needed, &self.model.limits),
-            error => error.into(),
-        })?;
+        let made = made.map_err(|error| self.in_terms_of_limits(error))?;
         self.finished(shape, surface(made))
     }
 
+    fn in_terms_of_limits(&self, error: TessellateError) -> RealizeError {
+        match error {
+            TessellateError::TooMany { needed, .. } => limit::in_terms_of(needed, &self.model.limits),
+            error => error.into(),
+        }
+    }
+
     fn finished(&self, shape: &Shape, made: Made) -> Result<Made, RealizeError> {
-        // Boxes, planes and polygons have one normal a face already.
+        // Boxes, flat faces and polygons have one normal a face already.
         let faceted = matches!(
             shape.recipe,
-            Recipe::Cuboid { .. } | Recipe::Plane(_) | Recipe::Polygons { .. } | Recipe::Assembly(_)
+            Recipe::Cuboid { .. }
+                | Recipe::Plane(_)
+                | Recipe::Sheet(_)
+                | Recipe::Polygons { .. }
+                | Recipe::Assembly(_)
         );
         let flat = !faceted && shape.options.smoothing == Smoothing::Flat;
         let made = if flat { flatten(made) } else { made };
-        Cost::of(&made.mesh).check(&self.model.limits)?;
+        cost(&made).check(&self.model.limits)?;
         Ok(made)
     }
 
@@ -183,39 +203,32 @@ impl<'a> Maker<'a> {
 
     fn polygons(
         &self,
-        shape: &Shape,
+        handle: ShapeHandle,
         mesh: &mesh::PolygonMesh,
         materials: &[Option<MaterialHandle>],
     ) -> Result<Made, RealizeError> {
+        let shape = self.model.shape(handle);
         let shading = match shape.options.smoothing {
             Smoothing::Auto => Shading::Auto,
             Smoothing::Flat => Shading::Flat,
             Smoothing::Smooth => Shading::Smooth,
         };
         let converted = convert(mesh, &ConvertOptions { shading, crease_angle: shape.options.crease_angle })?;
-        let mut notes = Vec::new();
-        if !converted.dropped_faces.is_empty() {
-            notes.push(format!(
-                "{} faces without area are left out, the first is face {}",
-                converted.dropped_faces.len(),
-                converted.dropped_faces[0]
-            ));
-        }
-        if !converted.crossing_faces.is_empty() {
-            notes.push(format!(
-                "{} faces cross themselves and are cut as fans, the first is face {}",
-                converted.crossing_faces.len(),
-                converted.crossing_faces[0]
-            ));
-        }
+        let faces = |list: &[u32]| list.first().map(|first| Faces { first: *first, count: list.len() });
+        let notes = [
+            faces(&converted.dropped_faces).map(Note::Dropped),
+            faces(&converted.flat_faces).map(Note::Flat),
+            faces(&converted.crossing_faces).map(Note::Crossing),
+        ];
         let of =
             |index: &Option<u32>| index.and_then(|index| materials.get(index as usize).copied().flatten());
         Ok(Made {
             materials: converted.materials.iter().map(of).collect(),
             mesh: converted.mesh,
+            wire: Wire::default(),
             deviation: Deviation::NONE,
             tolerance: None,
-            notes,
+            notes: notes.into_iter().flatten().map(|note| (handle, note)).collect(),
         })
     }
 
@@ -227,19 +240,20 @@ impl<'a> Maker<'a> {
     ) -> Result<Made, RealizeError> {
         let mut whole = Made {
             mesh: Mesh::default(),
+            wire: Wire::default(),
             materials: Vec::new(),
             deviation: Deviation::NONE,
             tolerance: None,
             notes: Vec::new(),
         };
-        let mut cost = Cost::default();
+        let mut total = Cost::default();
         for copies in parts.chunk_by(|(one, _), (next, _)| one == next) {
             let (handle, first) = copies[0];
             let mut sources = 0;
             let made = self.part(handle, inherited.within(&first), &mut sources)?;
             // All copies are counted before the first is made.
-            cost = cost.plus(Cost::of(&made.mesh).times(copies.len() as u64));
-            cost.check(&self.model.limits)?;
+            total = total.plus(cost(&made).times(copies.len() as u64));
+            total.check(&self.model.limits)?;
             for (_, map) in copies {
                 let mut copy = made.clone();
                 shift_sources(&mut copy, *next_source);
@@ -258,9 +272,14 @@ fn has_fixed_grid(shape: &Shape) -> bool {
     shape.options.density.is_some() || divided
 }
 
+fn cost(made: &Made) -> Cost {
+    Cost::of(&made.mesh).plus(Cost::of_wire(&made.wire))
+}
+
 fn join(whole: &mut Made, part: &Made) {
     let offset = mesh::index(whole.materials.len());
     whole.mesh.append(&part.mesh, offset);
+    whole.wire.append(&part.wire, offset);
     whole.materials.extend(&part.materials);
     whole.deviation = whole.deviation.union(part.deviation);
     whole.tolerance = match (whole.tolerance, part.tolerance) {
@@ -269,7 +288,7 @@ fn join(whole: &mut Made, part: &Made) {
     };
     for note in &part.notes {
         if !whole.notes.contains(note) {
-            whole.notes.push(note.clone());
+            whole.notes.push(*note);
         }
     }
 }
@@ -278,6 +297,7 @@ fn join(whole: &mut Made, part: &Made) {
 fn shift_sources(made: &mut Made, first: u32) {
     if first > 0 {
         made.mesh.vertices.iter_mut().for_each(|vertex| vertex.anchor.source += first);
+        made.wire.points.iter_mut().for_each(|point| point.anchor.source += first);
     }
 }
 
@@ -286,6 +306,7 @@ fn place(made: &mut Made, map: &DAffine3) {
         return;
     }
     made.mesh.transform(map);
+    made.wire.transform(map);
     let stretch = stretch(&map.matrix3);
     made.deviation.bound *= stretch;
     made.tolerance = made.tolerance.map(|tolerance| tolerance * stretch);
@@ -370,23 +391,26 @@ fn shows_texture(model: &Model, handle: ShapeHandle) -> bool {
     shows.pop().unwrap_or(false)
 }
 
-/// One run for each material, in the order of their first use.
+/// One run and one origin of strands for each material, in the order of their first use.
 pub(super) fn group_by_material(made: Made) -> Made {
+    let origins = made.mesh.runs.iter().map(|run| run.origin);
+    let origins = origins.chain(made.wire.strands.iter().map(|strand| strand.origin));
     let mut order: Vec<Option<MaterialHandle>> = Vec::new();
-    for run in &made.mesh.runs {
-        let material = made.materials[run.origin as usize];
+    for material in origins.map(|origin| made.materials[origin as usize]) {
         if !order.contains(&material) {
             order.push(material);
         }
     }
-    if order.len() == made.mesh.runs.len()
-        && made.mesh.runs.iter().enumerate().all(|(k, run)| run.origin as usize == k)
-    {
+    let grouped = made.mesh.runs.iter().zip(0..).all(|(run, k)| run.origin == k)
+        && order.len() == made.mesh.runs.len()
+        && made.wire.is_empty();
+    if grouped {
         return made;
     }
     let mut triangles = Vec::with_capacity(made.mesh.triangles.len());
-    let mut runs = Vec::new();
+    let mut runs: Vec<Run> = Vec::new();
     for (origin, material) in order.iter().enumerate() {
+        let before = triangles.len();
         let mut start = 0;
         for run in &made.mesh.runs {
             if made.materials[run.origin as usize] == *material {
@@ -394,7 +418,12 @@ pub(super) fn group_by_material(made: Made) -> Made {
             }
             start = run.end;
         }
-        runs.push(Run { origin: mesh::index(origin), end: mesh::index(triangles.len()) });
+        if triangles.len() > before {
+            runs.push(Run { origin: mesh::index(origin), end: mesh::index(triangles.len()) });
+        }
     }
-    Made { mesh: Mesh { triangles, runs, ..made.mesh }, materials: order, ..made }
+    let name = |material| mesh::index(order.iter().position(|known| known == material).unwrap_or(0));
+    let names: Vec<u32> = made.materials.iter().map(name).collect();
+    let wire = made.wire.regrouped(&names);
+    Made { mesh: Mesh { triangles, runs, ..made.mesh }, wire, materials: order, ..made }
 }

@@ -17,8 +17,13 @@ pub(super) fn source_count(recipe: &Recipe) -> u32 {
         Recipe::Cuboid { .. } => 6,
         Recipe::Revolution(_) | Recipe::Sweep(_) => 3,
         Recipe::Extrusion(extrusion) => mesh::index(extrusion.outlines.len()) + 2,
-        Recipe::Polygons { .. } | Recipe::RoundedBox(_) | Recipe::Geodesic(_) | Recipe::Plane(_) => 1,
         Recipe::Patches(patches) => mesh::index(patches.surfaces.len() + patches.caps.len()),
+        Recipe::Polygons { .. }
+        | Recipe::RoundedBox(_)
+        | Recipe::Geodesic(_)
+        | Recipe::Plane(_)
+        | Recipe::Sheet(_) => 1,
+        Recipe::Wire(curves) => mesh::index(curves.len()),
         Recipe::Assembly(_) => 0,
     }
 }
@@ -41,6 +46,8 @@ enum Kind {
     Extruded(AnyCurve),
     Swept(Box<SweptSurface>),
     Patch(Field),
+    /// A curve by itself.
+    Line(AnyCurve),
 }
 
 /// All surfaces of a shape, by the source of an anchor.
@@ -75,7 +82,7 @@ fn collect(model: &Model, handle: ShapeHandle, outer: &DAffine3, all: &mut Vec<S
     let mut push = |kind: Kind| all.push(Source { kind, map, back: map.inverse() });
     match &shape.recipe {
         Recipe::Cuboid { .. } => (0..6).for_each(|_| push(Kind::Exact)),
-        Recipe::Polygons { .. } | Recipe::Plane(_) => push(Kind::Exact),
+        Recipe::Polygons { .. } | Recipe::Plane(_) | Recipe::Sheet(_) => push(Kind::Exact),
         Recipe::RoundedBox(shape) => push(Kind::Rounded(*shape)),
         Recipe::Geodesic(ball) => {
             push(Kind::Rounded(RoundedBox { size: DVec3::splat(2.0 * ball.radius), radius: ball.radius }));
@@ -100,6 +107,7 @@ fn collect(model: &Model, handle: ShapeHandle, outer: &DAffine3, all: &mut Vec<S
             patches.surfaces.iter().for_each(|surface| push(Kind::Patch(Field::new(surface))));
             patches.caps.iter().for_each(|_| push(Kind::Exact));
         }
+        Recipe::Wire(curves) => curves.iter().for_each(|curve| push(Kind::Line(curve.clone()))),
         Recipe::Assembly(parts) => {
             for (part, inner) in parts {
                 collect(model, *part, &(map * *inner), all);
@@ -188,6 +196,7 @@ impl Source {
             }
             Kind::Swept(surface) => swept_distance(surface, local, window),
             Kind::Patch(surface) => surface.distance(local, window),
+            Kind::Line(curve) => distance_near(curve, local, window.u),
         };
         away * super::shape::stretch(&self.map.matrix3)
     }
@@ -330,12 +339,14 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
                 max: outline.max.with_z(extrusion.bottom + extrusion.height),
             }
         }
+        Recipe::Sheet(sheet) => along(&sheet.outlines[0]),
         Recipe::Sweep(sweep) => {
             let (path, profile) = (along(&sweep.path), along(&sweep.profile));
             let reach = DVec3::splat(profile.reach());
             Bounds { min: path.min - reach, max: path.max + reach }
         }
         Recipe::Patches(patches) => patches.surfaces.iter().map(lattice).fold(Bounds::EMPTY, Bounds::union),
+        Recipe::Wire(curves) => curves.iter().map(along).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Assembly(_) => Bounds::EMPTY,
     }
 }

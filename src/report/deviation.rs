@@ -37,15 +37,32 @@ pub fn measure_deviation(
     handle: ShapeHandle,
 ) -> f64 {
     let sources = sources(model, handle);
+    let lines = of_lines(geometry, known, &sources);
     if !sources.curved() || known.anchors.len() != geometry.positions.len() {
-        return 0.0;
+        return lines;
     }
     // The greatest of a set is the same in any order, so threads do not matter.
     (0..geometry.indices.len() / 3)
         .into_par_iter()
         .with_min_len(256)
         .map(|triangle| of_triangle(triangle, geometry, &known.anchors, &sources))
-        .reduce(|| 0.0, f64::max)
+        .reduce(|| lines, f64::max)
+}
+
+/// The greatest distance from samples of written lines to their curves.
+fn of_lines(geometry: &Geometry<'_>, known: &WrittenGeometry, sources: &Sources) -> f64 {
+    let lines = &geometry.lines;
+    if known.line_anchors.len() != lines.positions.len() {
+        return 0.0;
+    }
+    let of_segment = |ends: &[u32; 2]| {
+        let [a, b] = ends.map(|end| known.line_anchors[end as usize]);
+        let [from, to] = ends.map(|end| DVec3::from_array(lines.positions[end as usize].map(f64::from)));
+        let Some(source) = sources.get(a.source) else { return 0.0 };
+        let window = Window { u: [a.u, b.u, b.u], v: [0.0; 3] };
+        (0..=8_u8).map(|k| source.distance(from.lerp(to, f64::from(k) / 8.0), &window)).fold(0.0, f64::max)
+    };
+    lines.segments.iter().map(of_segment).fold(0.0, f64::max)
 }
 
 fn of_triangle(triangle: usize, geometry: &Geometry<'_>, anchors: &[Anchor], sources: &Sources) -> f64 {

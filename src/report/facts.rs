@@ -4,6 +4,7 @@
 //! Every number is the same for any number of threads: sums run over fixed blocks whose results are added pairwise.
 
 mod cache;
+mod lines;
 mod merge;
 mod moments;
 mod source;
@@ -15,6 +16,7 @@ use crate::geometry::mesh::topology::{self, Topology};
 use moments::Moments;
 
 pub use cache::{FIFO_SIZE, VertexCache, vertex_cache};
+pub use lines::{LineFacts, measure_lines};
 pub use source::{Corner, Position};
 
 /// What [`measure`] finds.

@@ -20,7 +20,7 @@ use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::Evidence;
 use crate::gltf::{Geometry, Indices, Read, ReadError, Written, WrittenGeometry, read};
 use crate::model::{Model, ShapeHandle};
-use facts::{FactsError, MeshFacts};
+use facts::{Box3, FactsError, LineFacts, MeshFacts, measure_lines};
 use thiserror::Error;
 
 /// What is known of an asset.
@@ -72,6 +72,9 @@ pub struct Totals {
     pub primitives: usize,
     /// Triangles of all meshes.
     pub triangles: u64,
+    /// Segments of lines of all meshes.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub segments: u64,
     /// Vertices of all meshes.
     pub vertices: u64,
     /// Materials.
@@ -84,6 +87,9 @@ pub struct Totals {
     pub draw_calls: u64,
     /// Triangles of all nodes.
     pub drawn_triangles: u64,
+    /// Segments of all nodes.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub drawn_segments: u64,
     /// Box of all nodes in the scene.
     pub bounds: Extent,
 }
@@ -106,6 +112,9 @@ pub struct ShapeFacts {
     /// What is measured.
     #[serde(flatten)]
     pub facts: MeshFacts,
+    /// Its lines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lines: Option<LineFacts>,
     /// Distance from the exact shape.
     pub deviation: DeviationFacts,
     /// The polygons it was made from.
@@ -220,9 +229,18 @@ fn shape_facts(
     measured: Option<f64>,
 ) -> Result<ShapeFacts, ReportError> {
     let geometry = &file.geometries[known.mesh];
-    let facts = mesh_facts(geometry)?;
+    let mut facts = mesh_facts(geometry)?;
+    let lines = line_facts(geometry);
+    if geometry.parts.is_empty() {
+        // Of no triangles everything holds; to say so of lines would mislead.
+        (facts.closed, facts.manifold, facts.volume) = (false, false, None);
+    }
+    if let Some(lines) = &lines {
+        facts.bounds = together(facts.bounds, lines.bounds);
+    }
     Ok(ShapeFacts {
-        primitives: geometry.parts.len(),
+        primitives: geometry.parts.len() + geometry.lines.parts.len(),
+        lines,
         deviation: DeviationFacts {
             tolerance: known.tolerance,
             bound: known.deviation.bound + single_rounding(extent(&facts).reach()),
@@ -247,6 +265,25 @@ pub fn mesh_facts(geometry: &Geometry<'_>) -> Result<MeshFacts, FactsError> {
         Indices::Short(indices) => facts::measure(&geometry.positions, indices),
         Indices::Long(indices) => facts::measure(&geometry.positions, indices),
     }
+}
+
+/// Measures the lines of one mesh of a file; `None` where it has none.
+#[must_use]
+pub fn line_facts(geometry: &Geometry<'_>) -> Option<LineFacts> {
+    let lines = &geometry.lines;
+    (!lines.parts.is_empty()).then(|| measure_lines(&lines.positions, &lines.segments))
+}
+
+fn together(one: Option<Box3>, other: Option<Box3>) -> Option<Box3> {
+    let (Some(a), Some(b)) = (one, other) else { return one.or(other) };
+    let pick =
+        |pick: fn(f32, f32) -> f32, a: [f32; 3], b: [f32; 3]| [0, 1, 2].map(|axis| pick(a[axis], b[axis]));
+    Some(Box3 { min: pick(f32::min, a.min, b.min), max: pick(f32::max, a.max, b.max) })
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+fn is_zero(count: &u64) -> bool {
+    *count == 0
 }
 
 fn extent(facts: &MeshFacts) -> Bounds {
@@ -308,22 +345,30 @@ fn totals(
         totals.primitives += facts.primitives;
         totals.triangles += facts.facts.triangles;
         totals.vertices += facts.facts.vertices;
+        if let Some(lines) = &facts.lines {
+            totals.segments += lines.segments;
+            totals.vertices += lines.vertices;
+        }
     }
     let mut bounds = Bounds::EMPTY;
     for (node, facts) in file.root.nodes.iter().zip(nodes) {
         let Some(mesh) = node.mesh else { continue };
         let geometry = &file.geometries[mesh.value()];
-        totals.draw_calls += geometry.parts.len() as u64;
+        totals.draw_calls += (geometry.parts.len() + geometry.lines.parts.len()) as u64;
+        totals.drawn_segments += geometry.lines.segments.len() as u64;
         totals.drawn_triangles += geometry.indices.len() as u64 / 3;
         let matrix = glam::DMat4::from_cols_array(&facts.matrix);
         let plain = matrix == glam::DMat4::IDENTITY;
         let known = written.geometries.iter().find(|known| known.mesh == mesh.value());
         bounds = match known.and_then(|known| shapes.get(&known.name)).filter(|_| plain) {
             Some(facts) => bounds.union(extent(&facts.facts)),
-            None => (0..geometry.positions.len()).fold(bounds, |bounds, vertex| {
-                let place = glam::Vec3::from_array(geometry.position(vertex)).as_dvec3();
-                bounds.with_point(matrix.transform_point3(place))
-            }),
+            None => {
+                let triangles = (0..geometry.positions.len()).map(|vertex| geometry.position(vertex));
+                triangles.chain(geometry.lines.positions.iter().copied()).fold(bounds, |bounds, position| {
+                    let place = glam::Vec3::from_array(position).as_dvec3();
+                    bounds.with_point(matrix.transform_point3(place))
+                })
+            }
         };
     }
     totals.bounds = Extent { min: bounds.min.to_array(), max: bounds.max.to_array() };

@@ -24,12 +24,18 @@ impl<'a> Checked<'a> {
 /// What keeps a scene from being written.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SceneError {
-    /// No triangle anywhere.
-    #[error("there is nothing to write: no triangle in any mesh")]
+    /// No triangle and no line anywhere.
+    #[error("there is nothing to write: no triangle and no line in any mesh")]
     Empty,
-    /// A geometry has no triangle.
-    #[error("shape `{0}` has no triangle")]
+    /// A geometry has neither triangles nor lines.
+    #[error("shape `{0}` has no triangle and no line")]
     NoTriangle(String),
+    /// Nothing of a wire can be seen.
+    #[error("shape `{0}` has no length: rounded to single precision each of its lines is a point")]
+    NoLength(String),
+    /// A texture is shown on lines.
+    #[error("shape `{0}` is a wire, and its material `{1}` shows a texture: lines have no place for it")]
+    TexturedWire(String, String),
     /// Nothing of a geometry can be seen.
     #[error(
         "shape `{0}` has no area: rounded to single precision each of its triangles is a line or a point"
@@ -84,8 +90,12 @@ pub fn check(scene: &Scene) -> Result<Checked<'_>, SceneError> {
 fn check_geometry(geometry: &Geometry) -> Result<(), SceneError> {
     let name = || geometry.name.clone();
     let mesh = &geometry.mesh;
-    if mesh.triangles.is_empty() {
+    if mesh.triangles.is_empty() && geometry.wire.is_empty() {
         return Err(SceneError::NoTriangle(name()));
+    }
+    check_wire(geometry)?;
+    if mesh.triangles.is_empty() {
+        return Ok(());
     }
     // The greatest index is reserved for primitive restart.
     if mesh.vertices.len() >= u32::MAX as usize || mesh.triangles.len() >= u32::MAX as usize {
@@ -125,6 +135,31 @@ fn check_geometry(geometry: &Geometry) -> Result<(), SceneError> {
     check_tangents(geometry)
 }
 
+fn check_wire(geometry: &Geometry) -> Result<(), SceneError> {
+    let wire = &geometry.wire;
+    let name = || geometry.name.clone();
+    if wire.is_empty() {
+        return Ok(());
+    }
+    if wire.points.len() >= u32::MAX as usize {
+        return Err(SceneError::TooLarge(name()));
+    }
+    let limit = f64::from(f32::MAX);
+    if !wire.points.iter().all(|point| point.position.abs().max_element() <= limit) {
+        return Err(SceneError::NotFinite(name()));
+    }
+    let covers = wire.ranges().all(|(_, range)| range.len() >= 2);
+    if !covers || wire.strands.last().is_none_or(|strand| strand.end as usize != wire.points.len()) {
+        return Err(SceneError::Runs(name()));
+    }
+    let place = |point: u32| wire.points[point as usize].position.as_vec3();
+    let long = wire.ranges().any(|(_, range)| {
+        let first = place(range.start);
+        range.skip(1).any(|point| place(point) != first)
+    });
+    if long { Ok(()) } else { Err(SceneError::NoLength(name())) }
+}
+
 fn check_runs(geometry: &Geometry) -> Result<(), SceneError> {
     let runs = &geometry.mesh.runs;
     let increasing = runs.windows(2).all(|pair| pair[0].end < pair[1].end);
@@ -146,10 +181,18 @@ fn check_tangents(geometry: &Geometry) -> Result<(), SceneError> {
 fn check_use(scene: &Scene, mesh: &MeshUse) -> Result<(), SceneError> {
     let dangling = || SceneError::Dangling(format!("mesh `{}`", mesh.name));
     let geometry = scene.geometries.get(mesh.geometry).ok_or_else(dangling)?;
-    let origins = geometry.mesh.runs.iter().all(|run| (run.origin as usize) < mesh.materials.len());
+    let strands = geometry.wire.strands.iter().map(|strand| strand.origin);
+    let mut origins = geometry.mesh.runs.iter().map(|run| run.origin).chain(strands);
+    let origins = origins.all(|origin| (origin as usize) < mesh.materials.len());
     let materials = mesh.materials.iter().flatten().all(|material| *material < scene.materials.len());
     if !origins || !materials {
         return Err(dangling());
+    }
+    for strand in &geometry.wire.strands {
+        let worn = mesh.materials[strand.origin as usize].map(|material| &scene.materials[material]);
+        if let Some(material) = worn.filter(|material| material.has_texture()) {
+            return Err(SceneError::TexturedWire(geometry.name.clone(), material.name.clone()));
+        }
     }
     let shown = mesh.materials.iter().flatten().map(|material| &scene.materials[*material]);
     let textured = shown.into_iter().find(|material| material.has_texture());

@@ -11,7 +11,7 @@ pub use crate::model::{AlphaMode, Filter, Image, ImageKind, Material, Texture, W
 
 use glam::{DQuat, DVec3};
 
-use crate::geometry::mesh::Mesh;
+use crate::geometry::mesh::{Mesh, Wire};
 use crate::geometry::tessellate::Deviation;
 
 /// Everything that is written into one file.
@@ -31,7 +31,7 @@ pub struct Scene {
     pub nodes: Vec<Node>,
 }
 
-/// Triangles and their attributes.
+/// Triangles with their attributes, and lines.
 #[derive(Clone, Debug)]
 pub struct Geometry {
     /// Name of the shape it comes from.
@@ -39,6 +39,8 @@ pub struct Geometry {
     /// Points, vertices, triangles; each run is one primitive, its origin an index into the materials of a
     /// [`MeshUse`].
     pub mesh: Mesh,
+    /// Lines; the origin of each strand is an index into the materials of a [`MeshUse`].
+    pub wire: Wire,
     /// Whether texture coordinates are written.
     pub uv: bool,
     /// For each vertex a tangent and the sign of the bitangent, where any material has a normal texture.
@@ -56,7 +58,7 @@ pub struct MeshUse {
     pub name: String,
     /// Index into [`Scene::geometries`].
     pub geometry: usize,
-    /// For each run of the geometry an index into [`Scene::materials`].
+    /// For each origin of the geometry's runs and strands an index into [`Scene::materials`].
     pub materials: Vec<Option<usize>>,
 }
 

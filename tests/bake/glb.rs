@@ -11,13 +11,24 @@ pub(crate) struct Glb {
     bin: Vec<u8>,
 }
 
-/// One mesh of a file. All primitives of a mesh that Kiln writes share their vertices.
+/// One mesh of a file. All primitives of triangles of a mesh that Kiln writes share their vertices, and so do all of
+/// lines.
 #[derive(Debug)]
 pub(crate) struct Mesh {
     pub(crate) positions: Vec<[f64; 3]>,
     pub(crate) normals: Vec<[f64; 3]>,
     pub(crate) uvs: Option<Vec<[f64; 2]>>,
     pub(crate) triangles: Vec<[usize; 3]>,
+    pub(crate) lines: Lines,
+}
+
+/// The lines of a mesh.
+#[derive(Debug, Default)]
+pub(crate) struct Lines {
+    pub(crate) positions: Vec<[f64; 3]>,
+    pub(crate) segments: Vec<[usize; 2]>,
+    /// The material of each primitive.
+    pub(crate) materials: Vec<Option<usize>>,
 }
 
 /// What is counted and summed over a mesh, points at equal positions taken as one.
@@ -110,24 +121,49 @@ impl Glb {
         Some(self.accessor(count(index)).into_iter().map(row).collect())
     }
 
+    /// The primitives of a mesh: those of triangles, then those of lines.
+    fn primitives(&self, index: usize) -> (Vec<&Value>, Vec<&Value>) {
+        let primitives = self.list("meshes")[index]["primitives"].as_array().expect("primitives");
+        let mode = |primitive: &Value| primitive.get("mode").map_or(4, count);
+        assert!(primitives.iter().all(|primitive| matches!(mode(primitive), 1 | 4)));
+        primitives.iter().partition(|primitive| mode(primitive) == 4)
+    }
+
+    /// The indices of primitives that share their positions.
+    fn indices(&self, primitives: &[&Value]) -> Vec<usize> {
+        let of = |primitive: &&Value| {
+            assert_eq!(primitive["attributes"]["POSITION"], primitives[0]["attributes"]["POSITION"]);
+            self.accessor(count(&primitive["indices"]))
+        };
+        primitives.iter().flat_map(of).map(|row| whole(row[0])).collect()
+    }
+
     /// A mesh by its place in the file.
     pub(crate) fn mesh(&self, index: usize) -> Mesh {
-        let primitives = self.list("meshes")[index]["primitives"].as_array().expect("primitives");
-        let first = &primitives[0];
-        let mut triangles = Vec::new();
-        for primitive in primitives {
-            assert_eq!(primitive["attributes"]["POSITION"], first["attributes"]["POSITION"]);
-            assert!(primitive.get("mode").is_none_or(|mode| *mode == 4));
-            let indices: Vec<usize> =
-                self.accessor(count(&primitive["indices"])).iter().map(|row| whole(row[0])).collect();
-            assert_eq!(indices.len() % 3, 0);
-            triangles.extend(indices.chunks(3).map(|corners| [corners[0], corners[1], corners[2]]));
-        }
+        let (surfaces, _) = self.primitives(index);
+        let indices = self.indices(&surfaces);
+        let (triangles, rest) = indices.as_chunks::<3>();
+        assert!(rest.is_empty());
+        let first = surfaces.first().copied().unwrap_or(&Value::Null);
         Mesh {
-            positions: self.vectors(first, "POSITION").expect("positions"),
-            normals: self.vectors(first, "NORMAL").expect("normals"),
+            positions: self.vectors(first, "POSITION").unwrap_or_default(),
+            normals: self.vectors(first, "NORMAL").unwrap_or_default(),
             uvs: self.vectors(first, "TEXCOORD_0"),
-            triangles,
+            triangles: triangles.to_vec(),
+            lines: self.lines(index),
+        }
+    }
+
+    fn lines(&self, index: usize) -> Lines {
+        let (_, lines) = self.primitives(index);
+        let Some(first) = lines.first() else { return Lines::default() };
+        let indices = self.indices(&lines);
+        let (segments, rest) = indices.as_chunks::<2>();
+        assert!(rest.is_empty());
+        Lines {
+            positions: self.vectors(first, "POSITION").expect("positions"),
+            segments: segments.to_vec(),
+            materials: lines.iter().map(|one| one.get("material").map(count)).collect(),
         }
     }
 
@@ -167,7 +203,8 @@ impl Glb {
             let square: f64 = normal.iter().map(|part| part * part).sum();
             assert!((square - 1.0).abs() < 1e-5, "a normal has the square {square}");
         }
-        for primitive in self.list("meshes")[index]["primitives"].as_array().expect("primitives") {
+        self.check_lines(index, &mesh.lines);
+        for primitive in self.primitives(index).0 {
             let accessor = &self.list("accessors")[count(&primitive["indices"])];
             let wide = count(&accessor["componentType"]) == 5125;
             assert_eq!(wide, vertices > 65_535, "{vertices} vertices");
@@ -185,6 +222,23 @@ impl Glb {
         }
         if let Some(uvs) = mesh.uvs {
             assert!(uvs.len() == vertices && uvs.iter().flatten().all(|number| number.is_finite()));
+        }
+    }
+
+    fn check_lines(&self, index: usize, lines: &Lines) {
+        let vertices = lines.positions.len();
+        assert!(lines.segments.iter().flatten().all(|end| *end < vertices), "an index is out of range");
+        assert!(lines.positions.iter().flatten().all(|number| number.is_finite()));
+        for primitive in self.primitives(index).1 {
+            let accessor = &self.list("accessors")[count(&primitive["indices"])];
+            assert_eq!(count(&accessor["componentType"]) == 5125, vertices > 65_535, "{vertices} vertices");
+            let attributes = primitive["attributes"].as_object().expect("attributes");
+            // Without normals they are shown without light.
+            assert_eq!(attributes.keys().collect::<Vec<_>>(), ["POSITION"]);
+            self.check_bounds(count(&attributes["POSITION"]));
+            if let Some(material) = primitive.get("material") {
+                assert!(count(material) < self.list("materials").len());
+            }
         }
     }
 
@@ -261,7 +315,7 @@ impl Mesh {
         let point = |corner: usize| places[&bits(&self.positions[corner])];
         let mut edges: BTreeMap<(usize, usize), (usize, i64)> = BTreeMap::new();
         let (mut area, mut volume) = (0.0, 0.0);
-        let origin = self.positions[0];
+        let origin = self.positions.first().copied().unwrap_or_default();
         for triangle in &self.triangles {
             let flat = self.across(*triangle);
             area += dot(flat, flat).sqrt() / 2.0;
@@ -278,7 +332,7 @@ impl Mesh {
             points: places.len(),
             area,
             volume,
-            closed: edges.values().all(|(_, balance)| *balance == 0),
+            closed: !edges.is_empty() && edges.values().all(|(_, balance)| *balance == 0),
             euler: signed(places.len()) - signed(edges.len()) + signed(self.triangles.len()),
             boundary: edges.values().filter(|(uses, _)| *uses == 1).count(),
         }

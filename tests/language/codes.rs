@@ -18,7 +18,8 @@ fn codes(text: &str) -> Vec<Code> {
 
 /// Codes of the whole pipeline, for what only geometry and the result can say.
 fn baked_codes(text: &str) -> Vec<Code> {
-    let files = MemoryFiles::new().with("example.toml", text);
+    let picture: &[u8] = include_bytes!("../../specs/inputs/label.png");
+    let files = MemoryFiles::new().with("example.toml", text).with("label.png", picture);
     let document = match Document::load("example.toml", &files) {
         Ok(document) => document,
         Err(found) => return found.into_vec().into_iter().map(|one| one.code).collect(),

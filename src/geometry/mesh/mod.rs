@@ -18,8 +18,10 @@ pub mod topology;
 mod transform;
 pub mod triangulate;
 pub mod weld;
+mod wire;
 
 pub use polygon::PolygonMesh;
+pub use wire::{Strand, Wire, WirePoint};
 
 use glam::{DVec2, DVec3};
 

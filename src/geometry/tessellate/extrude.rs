@@ -27,8 +27,8 @@ pub struct Extrusion {
 }
 
 /// One outline, cut and turned so that the outside is to its right.
-struct Outline {
-    stations: Vec<Station>,
+pub(super) struct Outline {
+    pub(super) stations: Vec<Station>,
     along: Vec<f64>,
 }
 
@@ -78,11 +78,11 @@ pub fn extrude(shape: &Extrusion, detail: &Detail) -> Result<Tessellation, Tesse
     Ok(Tessellation { mesh, deviation: Deviation { bound, evidence } })
 }
 
-fn flat(stations: &[Station]) -> Vec<DVec2> {
+pub(super) fn flat(stations: &[Station]) -> Vec<DVec2> {
     stations[..stations.len() - 1].iter().map(|station| station.point.truncate()).collect()
 }
 
-fn cut(curve: &AnyCurve, hole: bool, detail: &Detail) -> Result<Outline, TessellateError> {
+pub(super) fn cut(curve: &AnyCurve, hole: bool, detail: &Detail) -> Result<Outline, TessellateError> {
     let density = match detail.density {
         SurfaceDensity::Tolerance(tolerance) => Density::Tolerance(tolerance),
         SurfaceDensity::Grid { u, .. } => Density::Count(u.max(3)),

@@ -17,9 +17,11 @@ mod revolve;
 mod ring;
 mod round;
 mod rounded;
+mod sheet;
 mod sweep;
 #[cfg(test)]
 mod tests;
+mod wire;
 
 pub use cuboid::cuboid;
 pub use discretize::{Density, Station, arc_lengths, discretize};
@@ -29,7 +31,9 @@ pub use patch::{Patchwork, Rim, patchwork};
 pub use plane::{FlatPlane, plane};
 pub use revolve::{Revolution, revolve};
 pub use rounded::{RoundedBox, rounded_box};
+pub use sheet::{Sheet, sheet};
 pub use sweep::{Sweep, sweep};
+pub use wire::wire;
 
 use thiserror::Error;
 

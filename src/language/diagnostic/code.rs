@@ -188,6 +188,14 @@ codes! {
     NoFlatEnd = "K0822";
     /// a measure of a shape does not fit its other measures
     DoesNotFit = "K0830";
+    /// a face crosses itself
+    FoldedFace = "K0831";
+    /// a face has no area
+    FlatFace = "K0832";
+    /// a hole lies in no outline
+    StrayHole = "K0833";
+    /// lines cannot show a texture
+    TexturedWire = "K0834";
 
     /// a file cannot be imported
     ImportFailed = "K0851";

@@ -218,6 +218,17 @@ examples! {
     AlongUp: "With `frame = \"up\"` the profile stands upright across its path. Where the path itself runs along `up`, no way of standing is more upright than another, and just beside that place the profile would spin.",
         "[curve.way.polyline]\npoints = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]\n[shape.a.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = \"way\"\nframe = \"up\"" =>
         "[curve.way.polyline]\npoints = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]\n[shape.a.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = \"way\"\nframe = \"up\"\nup = [0, 0, 1]";
+    FoldedFace: "The outline of a face crosses itself, most often because two corners are named in the wrong order. It is cut into triangles all the same, some of which lie over others.",
+        "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 2, 0]]\nfaces = [[0, 2, 1, 3]]" =>
+        "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 2, 0]]\nfaces = [[0, 1, 2, 3]]";
+    FlatFace: "A face encloses nothing: its corners lie on one line or at one place, or its outline runs back the way it came. Such faces are kept where others share their edges; they have no area to see.",
+        "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 2, 0]]\nfaces = [[0, 1, 2], [0, 2, 3]]" =>
+        "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 2, 0]]\nfaces = [[0, 1, 2, 3]]";
+    StrayHole: "Of the loops of a polygon those that turn counterclockwise are outlines, and those that turn clockwise are holes, each in the outline around it.",
+        "[shape.a.polygon]\nloops = [[[0, 0], [0, 1], [1, 0]]]" => "[shape.a.polygon]\nloops = [[[0, 0], [1, 0], [0, 1]]]";
+    TexturedWire: "A wire is made of lines, which have no surface for a texture. Give it a material with a plain color, or draw a thin profile along its curves with `sweep`.",
+        "[material.m]\ncolor-texture = \"label.png\"\n[shape.a]\nmaterial = \"m\"\n[shape.a.wire]\ncurves = [{ circle = { radius = 1 } }]" =>
+        "[material.m]\ncolor = \"#b5651d\"\n[shape.a]\nmaterial = \"m\"\n[shape.a.wire]\ncurves = [{ circle = { radius = 1 } }]";
     ImportFailed: "A file is damaged or cut off. The message names its line and value. Export it again.",
         "" => "";
     ImportNote: "Something in an imported file was passed over or put right; the notes say what and where.",

@@ -6,6 +6,7 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::check::Check;
 use crate::language::spec::construct::table;
+use crate::language::spec::polygon::Face;
 use crate::language::spec::reader::Reader;
 use crate::language::spec::spanned::Sp;
 
@@ -14,12 +15,13 @@ table! {
     "mesh" pub Mesh {
         /// The points, `[x, y, z]`, in the document's unit.
         points: Vec<Sp<DVec3>> => Check::items(3);
-        /// The faces: for each, the indices of its corners in `points`, from 0.
-        faces: Vec<Sp<Vec<u32>>> => Check::items(1);
+        /// The faces: for each, the indices of its corners in `points`, from 0. A face with holes is a list of loops:
+        /// `[[0, 1, 2, 3], [4, 5, 6]]`, the outline first.
+        faces: Vec<Sp<Face>> => Check::items(1);
         /// Texture coordinates, `[u, v]`. Without `face-uvs` there is one for each point.
         uvs: Option<Sp<Vec<DVec2>>>;
-        /// For each face, the indices of its corners in `uvs`.
-        face_uvs: Option<Sp<Vec<Sp<Vec<u32>>>>>;
+        /// For each face, the indices of its corners in `uvs`; loops are written as in `faces`.
+        face_uvs: Option<Sp<Vec<Sp<Face>>>>;
         /// For each face the number of its smoothing group: edges between faces of one group look smooth. 0 is flat.
         smoothing_groups: Option<Sp<Vec<u32>>>;
     }
@@ -36,9 +38,13 @@ impl Mesh {
         self.check_groups(reader) && uvs && good
     }
 
-    fn check_face(&self, index: usize, face: &Sp<Vec<u32>>, reader: &mut Reader<'_>) -> bool {
+    fn check_face(&self, index: usize, face: &Sp<Face>, reader: &mut Reader<'_>) -> bool {
         let place = format!("`faces[{index}]`");
-        if let Some(fault) = corner_fault(face) {
+        let faults = face.loops.iter().enumerate().filter_map(|(k, corners)| {
+            let fault = corner_fault(corners)?;
+            Some(if k == 0 { fault } else { format!("has a hole that {fault}") })
+        });
+        if let Some(fault) = faults.into_iter().next() {
             reader.report(Diagnostic::error(Code::FaceCorners, format!("{place} {fault}")).at(face.span, ""));
             return false;
         }
@@ -60,18 +66,21 @@ impl Mesh {
         }
     }
 
-    fn check_face_uvs(&self, uvs: usize, faces: &Sp<Vec<Sp<Vec<u32>>>>, reader: &mut Reader<'_>) -> bool {
+    fn check_face_uvs(&self, uvs: usize, faces: &Sp<Vec<Sp<Face>>>, reader: &mut Reader<'_>) -> bool {
         if !self.same_count("face-uvs", faces.len(), faces.span, ("faces", self.faces.len()), reader) {
             return false;
         }
         let mut good = true;
         for (index, (corners, face)) in faces.iter().zip(&self.faces).enumerate() {
             let place = format!("`face-uvs[{index}]`");
-            if corners.len() == face.len() {
+            let counts = |face: &Face| face.loops.iter().map(Vec::len).collect::<Vec<_>>();
+            if counts(corners) == counts(face) {
                 good &= check_indices(&place, corners, uvs, "uvs", reader);
                 continue;
             }
-            let message = format!("{place} has {} corners, its face has {}", corners.len(), face.len());
+            let said =
+                |face: &Face| counts(face).iter().map(ToString::to_string).collect::<Vec<_>>().join(" + ");
+            let message = format!("{place} has {} corners, its face has {}", said(corners), said(face));
             let report = Diagnostic::error(Code::WrongCount, message);
             reader.report(report.at(corners.span, "").also(face.span, "the face"));
             good = false;
@@ -113,8 +122,8 @@ fn corner_fault(face: &[u32]) -> Option<String> {
     Some(format!("names point {} twice", twice[0]))
 }
 
-fn check_indices(place: &str, face: &Sp<Vec<u32>>, count: usize, of: &str, reader: &mut Reader<'_>) -> bool {
-    let Some(index) = face.iter().find(|index| **index as usize >= count) else { return true };
+fn check_indices(place: &str, face: &Sp<Face>, count: usize, of: &str, reader: &mut Reader<'_>) -> bool {
+    let Some(index) = face.corners().find(|index| *index as usize >= count) else { return true };
     let message = format!("{place} names {index}, but `{of}` has only {count} items");
     let report = Diagnostic::error(Code::FaceIndex, message).at(face.span, "index out of range");
     reader.report(report.note("indices count from 0"));

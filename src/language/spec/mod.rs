@@ -21,6 +21,7 @@ mod node;
 mod page;
 mod path;
 mod point;
+mod polygon;
 mod primitive;
 mod profile;
 mod reader;
@@ -37,6 +38,7 @@ mod spline_end;
 mod subdivision_curve;
 mod tangent;
 mod whole;
+mod wire;
 
 pub use crate::language::suggest::closest;
 pub use arc::{Arc, CenterArc};
@@ -56,6 +58,7 @@ pub use node::Node;
 pub use page::reference;
 pub use path::{ArcSegment, Joint, Path, Segment};
 pub use point::{Count, Point, Scale, Segments};
+pub use polygon::{Face, Polygon, Sheet};
 pub use primitive::{
     Base, BoxShape, Capsule, Cone, Cylinder, Disk, Geodesic, GeodesicClass, PlaneShape, Polyhedron, Pose,
     Solid, Sphere, Torus, Tube,
@@ -70,6 +73,7 @@ pub use spline_end::{FunctionSpline, Spline, SplineEnd};
 pub use subdivision_curve::{CurveScheme, SubdivisionCurve};
 pub use tangent::{Cardinal, CatmullRom, ChordPower, EndRule, Hermite, KochanekBartels, PerPoint};
 pub use whole::schema;
+pub use wire::Wire;
 
 pub(crate) use name::check_name;
 pub(crate) use reader::backtick;

@@ -10,6 +10,7 @@ use crate::language::spec::import::Import;
 use crate::language::spec::kind::{Kinds, take_kind};
 use crate::language::spec::mesh::Mesh;
 use crate::language::spec::point::{Scale, Segments};
+use crate::language::spec::polygon::{Polygon, Sheet};
 use crate::language::spec::primitive::{
     BoxShape, Capsule, Cone, Cylinder, Disk, Geodesic, PlaneShape, Polyhedron, Sphere, Torus, Tube,
 };
@@ -19,6 +20,7 @@ use crate::language::spec::reference::MaterialName;
 use crate::language::spec::ruled::{Ruled, Translational};
 use crate::language::spec::schema::Schemas;
 use crate::language::spec::spanned::Sp;
+use crate::language::spec::wire::Wire;
 use crate::language::value::Value;
 
 /// A shape: its kind and the fields that all kinds have.
@@ -116,6 +118,12 @@ kinds! {
         Ruled(Ruled) = "ruled";
         /// A curve moved along another.
         Translational(Translational) = "translational";
+        /// The flat face inside a closed curve.
+        Sheet(Sheet) = "sheet";
+        /// Flat polygons with holes, written out.
+        Polygon(Polygon) = "polygon";
+        /// Curves as lines.
+        Wire(Wire) = "wire";
         /// Points and faces, written out.
         Mesh(Mesh) = "mesh";
         /// A model from a file.
