@@ -35,6 +35,7 @@ class Runs:
         """Run the command once and note what it took; a failure stops further runs of this command."""
         if self.failure is not None:
             return
+        self.clear()
         with log.open("wb") as out:
             started = time.perf_counter()
             try:
@@ -52,6 +53,12 @@ class Runs:
         if process.returncode != 0:
             last = log.read_text(errors="replace").strip().splitlines()[-1:]
             self.failure = f"exit code {process.returncode}: {' '.join(last)}"
+
+    def clear(self) -> None:
+        """Remove what an earlier run wrote: to replace a file makes some file systems flush the new one first."""
+        for old in self.output.parent.glob(f"{self.output.stem}.*"):
+            if old.is_file():
+                old.unlink()
 
 
 def together(entries: Iterable[Runs], rounds: int, folder: Path, tell: Callable[[str], None]) -> None:

@@ -8,13 +8,17 @@ use super::{Domain, Jet, Side};
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pieces {
     breaks: Vec<f64>,
+    /// Pieces for each unit of the parameter, on average.
+    rate: f64,
 }
 
 impl Pieces {
     /// At least one piece; `None` when the parameters do not increase.
     pub(super) fn new(breaks: Vec<f64>) -> Option<Self> {
         let increasing = breaks.windows(2).all(|pair| pair[0] < pair[1]);
-        (breaks.len() > 1 && increasing).then_some(Self { breaks })
+        let last = breaks.len().checked_sub(2)? + 1;
+        let rate = last as f64 / (breaks[last] - breaks[0]);
+        increasing.then_some(Self { breaks, rate })
     }
 
     pub(super) fn count(&self) -> usize {
@@ -35,13 +39,32 @@ impl Pieces {
         &self.breaks[1..self.breaks.len() - 1]
     }
 
-    /// The piece that holds `t`; O(log pieces).
+    /// The piece that holds `t`: O(1) where pieces are about equally long, else O(log pieces).
     #[inline]
     pub(super) fn locate(&self, t: f64, side: Side) -> usize {
         match side {
-            Side::After => self.inner().partition_point(|knot| *knot <= t),
-            Side::Before => self.inner().partition_point(|knot| *knot < t),
+            Side::After => self.count_where(t, |knot| knot <= t),
+            Side::Before => self.count_where(t, |knot| knot < t),
         }
+    }
+
+    /// How many of the inner breaks, from the first on, stand `before` a parameter: a few steps from the place where
+    /// it would be among equal pieces, then by halving.
+    #[inline]
+    fn count_where(&self, t: f64, before: impl Fn(f64) -> bool) -> usize {
+        const STEPS: usize = 6;
+        let inner = self.inner();
+        let mut at = whole((t - self.breaks[0]) * self.rate).min(inner.len());
+        for _ in 0..STEPS {
+            if at < inner.len() && before(inner[at]) {
+                at += 1;
+            } else if at > 0 && !before(inner[at - 1]) {
+                at -= 1;
+            } else {
+                return at;
+            }
+        }
+        inner.partition_point(|knot| before(*knot))
     }
 
     /// Length of a piece in the parameter.
@@ -96,6 +119,13 @@ impl Pieces {
     }
 }
 
+/// The whole part of a number; 0 for a negative one and for none.
+#[inline]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the conversion saturates")]
+fn whole(number: f64) -> usize {
+    number as usize
+}
+
 /// Distance from a point to a segment.
 pub(super) fn distance_to_segment(point: DVec3, (start, end): (DVec3, DVec3)) -> f64 {
     let along = end - start;
@@ -135,4 +165,36 @@ pub(super) fn turns(before: DVec3, after: DVec3) -> bool {
     // 1e-14, a corner a person means starts far above.
     const SAME_DIRECTION: f64 = 1e-9;
     before.cross(after).length() > SAME_DIRECTION || before.dot(after) < 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Pieces;
+    use crate::geometry::curve::Side;
+
+    #[test]
+    fn a_piece_is_found_as_by_counting() {
+        let equal: Vec<f64> = (0..50).map(f64::from).collect();
+        let growing: Vec<f64> = (0..50).map(|k| f64::from(k * k) - 7.0).collect();
+        let crowded: Vec<f64> = (0..50).map(|k| if k < 49 { 1e-9 * f64::from(k) } else { 1.0 }).collect();
+        for breaks in [equal, growing, crowded, vec![0.0, 1.0], vec![-1.0, 0.0, 1e300]] {
+            let pieces = Pieces::new(breaks.clone()).unwrap();
+            let between = breaks.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0);
+            let beyond = [breaks[0] - 1.0, breaks[breaks.len() - 1] + 1.0, f64::NEG_INFINITY, f64::INFINITY];
+            for t in breaks.iter().copied().chain(between).chain(beyond) {
+                let counted = |before: &dyn Fn(f64) -> bool| {
+                    breaks[1..breaks.len() - 1].iter().filter(|knot| before(**knot)).count()
+                };
+                assert_eq!(pieces.locate(t, Side::After), counted(&|knot| knot <= t), "{t} of {breaks:?}");
+                assert_eq!(pieces.locate(t, Side::Before), counted(&|knot| knot < t), "{t} of {breaks:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn breaks_that_do_not_increase_make_no_pieces() {
+        for breaks in [vec![], vec![1.0], vec![0.0, 0.0], vec![0.0, 2.0, 1.0]] {
+            assert_eq!(Pieces::new(breaks), None);
+        }
+    }
 }

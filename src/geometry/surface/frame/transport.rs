@@ -92,6 +92,11 @@ impl Transport {
                 break;
             }
         }
+        let mut last = start;
+        for stop in &mut walked {
+            stop.walked = last.walked + length_of_step(path, last.t, stop.t);
+            last = *stop;
+        }
         self.stops.extend(walked);
     }
 
@@ -172,6 +177,7 @@ fn first_steps(path: &AnyCurve, start: f64, end: f64) -> u32 {
     steps
 }
 
+/// Frames after each of so many equal steps; lengths are left for those that stay.
 fn walk(path: &AnyCurve, start: Stop, end: f64, steps: u32) -> Vec<Stop> {
     let mut stops = Vec::with_capacity(steps as usize);
     let mut last = start;
@@ -179,8 +185,7 @@ fn walk(path: &AnyCurve, start: Stop, end: f64, steps: u32) -> Vec<Stop> {
         let t = if k == steps { end } else { start.t + (end - start.t) * f64::from(k) / f64::from(steps) };
         let jet = path.evaluate(t, Side::Before);
         let frame = reflect_twice(&last, jet.point, path.direction(t, Side::Before));
-        let walked = last.walked + length_of_step(path, last.t, t);
-        last = Stop { t, point: jet.point, frame, walked };
+        last = Stop { t, point: jet.point, frame, walked: start.walked };
         stops.push(last);
     }
     stops
