@@ -96,7 +96,21 @@ pub fn model(document: &Document, files: &dyn Files, options: &Options) -> Resul
     Ok(built.model)
 }
 
-/// The curve of a name, for `sample`; none when there is no such curve.
+/// The curve of a name with all its parts, for `sample`; none when there is no such curve.
+///
+/// # Errors
+/// Everything that is wrong with the document.
+pub fn curve_parts(
+    document: &Document,
+    files: &dyn Files,
+    options: &Options,
+    name: &str,
+) -> Result<Option<Vec<AnyCurve>>, Diagnostics> {
+    let (spec, _) = document.spec(options.variant.as_deref(), &options.overrides)?;
+    build::curve(&spec, name, files).map_err(|list| document.diagnostics(list))
+}
+
+/// The curve of a name; of one that has several parts the first.
 ///
 /// # Errors
 /// Everything that is wrong with the document.
@@ -106,8 +120,8 @@ pub fn curve(
     options: &Options,
     name: &str,
 ) -> Result<Option<AnyCurve>, Diagnostics> {
-    let (spec, _) = document.spec(options.variant.as_deref(), &options.overrides)?;
-    build::curve(&spec, name, files).map_err(|list| document.diagnostics(list))
+    let parts = curve_parts(document, files, options, name)?;
+    Ok(parts.and_then(|parts| parts.into_iter().next()))
 }
 
 fn file_name(options: &Options) -> String {

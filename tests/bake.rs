@@ -5,6 +5,7 @@
 mod accuracy;
 mod determinism;
 mod document;
+mod drawings;
 mod glb;
 mod hostile;
 mod mutation;

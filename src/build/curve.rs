@@ -2,15 +2,15 @@
 
 use glam::DVec3;
 
-use super::{Builder, conic, placement};
+use super::{Builder, conic};
 use crate::geometry::curve::{
-    AnyCurve, BezierSpline, Continuity, Curve as _, EllipseArc, Helix, Parametrization, Path, Polyline,
-    Reversed, Side, Transformed, interpolate, interpolate_closed, parameters,
+    AnyCurve, BezierSpline, Continuity, Curve as _, EllipseArc, Helix, Parametrization, Path, Polyline, Side,
+    interpolate, interpolate_closed, parameters,
 };
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{
-    Arc, ArcSegment, Bezier, Curve, CurveReference, EndRule, Joint, NaturalSpline, Point, Segment, Sp,
+    Arc, ArcSegment, Bezier, Curve, EndRule, Joint, NaturalSpline, Point, Segment, Sp,
 };
 
 pub(super) fn positions(points: &[Sp<Point>]) -> Vec<DVec3> {
@@ -18,26 +18,8 @@ pub(super) fn positions(points: &[Sp<Point>]) -> Vec<DVec3> {
 }
 
 impl Builder<'_> {
-    /// The curve of a name, built at its first use.
-    pub(super) fn named_curve(&mut self, name: &str) -> Option<AnyCurve> {
-        if let Some(known) = self.curves.get(name) {
-            return known.clone();
-        }
-        let definition = self.spec.curves.get(name)?;
-        let built = self.curve(&definition.value, definition.span);
-        self.curves.insert(name.to_owned(), built.clone());
-        built
-    }
-
-    /// The curve that a field asks for.
-    pub(super) fn curve_of(&mut self, reference: &CurveReference) -> Option<AnyCurve> {
-        match reference {
-            CurveReference::Named(name) => self.named_curve(&name.value),
-            CurveReference::Inline(curve) => self.curve(&curve.value, curve.span),
-        }
-    }
-
-    fn curve(&mut self, curve: &Curve, span: Span) -> Option<AnyCurve> {
+    /// A curve of a kind that has one part.
+    pub(super) fn curve(&mut self, curve: &Curve, span: Span) -> Option<AnyCurve> {
         match curve {
             Curve::Line(line) => {
                 Polyline::new(vec![line.from.position, line.to.position], false).map(AnyCurve::Polyline)
@@ -75,14 +57,9 @@ impl Builder<'_> {
             Curve::BSpline(spline) => self.b_spline(spline, span),
             Curve::Nurbs(spline) => self.nurbs(spline, span),
             Curve::Path(path) => self.path(path),
-            Curve::Reverse(reverse) => {
-                let curve = self.curve_of(&reverse.of)?;
-                Some(AnyCurve::Reversed(Reversed::new(curve)))
-            }
-            Curve::Transform(transform) => {
-                let curve = self.curve_of(&transform.of)?;
-                let map = placement(transform.scale.0, transform.rotate.value, transform.at.value);
-                Some(AnyCurve::Transformed(Transformed::new(curve, map)))
+            // Their parts are made where parts are asked for.
+            Curve::Svg(_) | Curve::Group(_) | Curve::Part(_) | Curve::Reverse(_) | Curve::Transform(_) => {
+                None
             }
         }
     }

@@ -8,17 +8,20 @@ mod bspline;
 mod carry;
 mod conic;
 mod curve;
+mod extrude;
 mod formula;
 mod formula_curve;
 mod import;
 mod material;
 mod node;
+mod part;
 mod polygon;
 mod primitive;
 mod profile;
 mod ruled;
 mod shape;
 mod spline;
+mod svg;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use indexmap::IndexMap;
@@ -56,13 +59,13 @@ pub fn model(spec: &Spec, name: &str, files: &dyn Files) -> Result<Built, Vec<Di
     Ok(Built { model, places, faces, warnings: reports })
 }
 
-/// Builds one curve of a document; none when there is no such curve.
+/// Builds one curve of a document, with all its parts; none when there is no such curve.
 ///
 /// # Errors
 /// All faults of that curve and of those it is made from.
-pub fn curve(spec: &Spec, name: &str, files: &dyn Files) -> Result<Option<AnyCurve>, Vec<Diagnostic>> {
+pub fn curve(spec: &Spec, name: &str, files: &dyn Files) -> Result<Option<Vec<AnyCurve>>, Vec<Diagnostic>> {
     let mut builder = Builder::new(spec, name, files);
-    let curve = builder.named_curve(name);
+    let curve = builder.named_parts(name);
     if builder.reports.is_empty() { Ok(curve) } else { Err(builder.reports) }
 }
 
@@ -79,7 +82,7 @@ struct Builder<'a> {
     shapes: IndexMap<String, Option<ShapeHandle>>,
     materials: IndexMap<String, Option<MaterialHandle>>,
     images: IndexMap<String, Option<ImageHandle>>,
-    curves: IndexMap<String, Option<AnyCurve>>,
+    curves: IndexMap<String, Option<Vec<AnyCurve>>>,
 }
 
 impl<'a> Builder<'a> {
@@ -121,7 +124,7 @@ impl<'a> Builder<'a> {
             self.material(name);
         }
         for name in spec.curves.keys() {
-            self.named_curve(name);
+            self.named_parts(name);
         }
         for name in spec.shapes.keys() {
             self.named_shape(name);

@@ -1,4 +1,4 @@
-//! Faces that are written out, and flat faces inside curves.
+//! Faces that are written out.
 
 use glam::{DVec2, DVec3};
 
@@ -6,7 +6,6 @@ use super::Builder;
 use crate::geometry::mesh;
 use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::planar::{Regions, regions};
-use crate::geometry::tessellate::Sheet;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec;
@@ -69,18 +68,6 @@ impl Builder<'_> {
         polygons.corner_uvs = polygons.corners.iter().map(|corner| corner.0).collect();
         self.face_places = faces.iter().map(|face| polygon.loops[face[0]].span).collect();
         self.polygons(polygons, span)
-    }
-
-    /// The face inside a closed curve.
-    pub(super) fn sheet(&mut self, sheet: &spec::Sheet) -> Option<Recipe> {
-        let outline = self.closed_profile(&sheet.profile, "outline");
-        let holes: Vec<_> = sheet.holes.iter().map(|hole| self.closed_profile(hole, "hole")).collect();
-        let holes: Option<Vec<_>> = holes.into_iter().collect();
-        let (outline, holes) = (outline?, holes?);
-        self.check_holes(&outline, &holes)?;
-        let mut outlines = vec![outline.curve];
-        outlines.extend(holes.into_iter().map(|hole| hole.curve));
-        Some(Recipe::Sheet(Sheet { outlines }))
     }
 
     fn polygons(&mut self, mesh: PolygonMesh, span: Span) -> Option<Recipe> {

@@ -17,6 +17,8 @@ pub(super) struct Profile {
     pub(super) stations: Vec<Station>,
     pub(super) size: f64,
     pub(super) span: Span,
+    /// As messages name it.
+    pub(super) name: String,
 }
 
 /// Most chords with which a profile is judged.
@@ -26,7 +28,11 @@ impl Builder<'_> {
     /// A flat profile that does not cross itself.
     pub(super) fn profile(&mut self, reference: &CurveReference, what: &str) -> Option<Profile> {
         let curve = self.curve_of(reference)?;
-        let span = reference.span();
+        self.profile_of(curve, what, reference.span())
+    }
+
+    /// A curve as a flat profile that does not cross itself.
+    pub(super) fn profile_of(&mut self, curve: AnyCurve, what: &str, span: Span) -> Option<Profile> {
         let rough: Vec<_> = discretize(&curve, Density::Count(64), CHORDS).ok()?;
         let bounds = Bounds::of_points(rough.iter().map(|station| station.point));
         let size = bounds.diagonal();
@@ -42,16 +48,16 @@ impl Builder<'_> {
             let message = format!("the {what} is not flat: it reaches z = {}", show(station.point.z));
             return self.refuse(Code::NotFlat, &message, span, "must lie in the x, y plane");
         }
-        let profile = Profile { curve, stations, size, span };
+        let profile = Profile { curve, stations, size, span, name: what.to_owned() };
         match profile.crossing() {
             Some(crossing) => self.crossed(&profile, what, &crossing),
             None => Some(profile),
         }
     }
 
-    /// A profile that is closed.
-    pub(super) fn closed_profile(&mut self, reference: &CurveReference, what: &str) -> Option<Profile> {
-        let profile = self.profile(reference, what)?;
+    /// A curve as a profile that is closed.
+    pub(super) fn closed_profile_of(&mut self, curve: AnyCurve, what: &str, span: Span) -> Option<Profile> {
+        let profile = self.profile_of(curve, what, span)?;
         if profile.curve.is_closed() {
             return Some(profile);
         }
@@ -59,7 +65,7 @@ impl Builder<'_> {
         let message = format!("the {what} must be closed; its ends are {} apart", show(start.distance(end)));
         let report = Diagnostic::error(Code::OpenProfile, message)
             .at(profile.span, format!("from {} to {}", place(start.truncate()), place(end.truncate())))
-            .help("write `closed = true`, or end the curve where it starts");
+            .help("write `closed = true`, end an SVG subpath with Z, or end the curve where it starts");
         self.report(report);
         None
     }
@@ -92,15 +98,13 @@ impl Builder<'_> {
     }
 
     /// Holes must lie inside their outline and apart from each other.
-    pub(super) fn check_holes(&mut self, outline: &Profile, holes: &[Profile]) -> Option<()> {
-        let outlines: Vec<&Profile> = std::iter::once(outline).chain(holes).collect();
+    pub(super) fn check_holes(&mut self, outline: &Profile, holes: &[&Profile]) -> Option<()> {
+        let outlines: Vec<&Profile> = std::iter::once(outline).chain(holes.iter().copied()).collect();
         let places: Vec<Vec<DVec2>> = outlines.iter().map(|profile| profile.places()).collect();
-        let hole = |index: usize| format!("`holes[{}]`", index - 1);
+        let name = |index: usize| &outlines[index].name;
         let help = "holes lie inside the outline and apart from each other";
-        let contact = first_contact(&places).and_then(|contact| confirmed(&outlines, &contact));
-        if let Some(Contact { first, second, point }) = contact {
-            let other = if first == 0 { "the outline".to_owned() } else { hole(first) };
-            let message = format!("{} meets {other} near {}", hole(second), place(point));
+        if let Some(Contact { first, second, point }) = meeting(&outlines, &places) {
+            let message = format!("{} meets {} near {}", name(second), name(first), place(point));
             let report = Diagnostic::error(Code::BadHole, message)
                 .at(outlines[second].span, "this hole")
                 .also(outlines[first].span, if first == 0 { "the outline" } else { "the other hole" })
@@ -114,10 +118,10 @@ impl Builder<'_> {
             let inside = (1..index).find(|other| encloses(&places[index], places[*other][0]));
             let swallowed = encloses(&places[index], places[0][0]);
             let message = match (encloses(&places[0], start), around, inside) {
-                (false, ..) if swallowed => format!("{} lies around the outline", hole(index)),
-                (false, ..) => format!("{} lies outside of the outline", hole(index)),
-                (_, Some(other), _) => format!("{} lies inside {}", hole(index), hole(other)),
-                (_, _, Some(other)) => format!("{} lies around {}", hole(index), hole(other)),
+                (false, ..) if swallowed => format!("{} lies around the outline", name(index)),
+                (false, ..) => format!("{} lies outside of the outline", name(index)),
+                (_, Some(other), _) => format!("{} lies inside {}", name(index), name(other)),
+                (_, _, Some(other)) => format!("{} lies around {}", name(index), name(other)),
                 _ => continue,
             };
             let report = Diagnostic::error(Code::BadHole, message).at(outlines[index].span, "this hole");
@@ -149,7 +153,7 @@ impl Profile {
     }
 
     /// Points along it, the end of a closed one left out.
-    fn places(&self) -> Vec<DVec2> {
+    pub(super) fn places(&self) -> Vec<DVec2> {
         flat(&self.stations, self.curve.is_closed())
     }
 }
@@ -157,6 +161,11 @@ impl Profile {
 fn flat(stations: &[Station], closed: bool) -> Vec<DVec2> {
     let used = stations.len() - usize::from(closed);
     stations[..used].iter().map(|station| station.point.truncate()).collect()
+}
+
+/// Two outlines that cross or touch; `places` are points along them.
+pub(super) fn meeting(outlines: &[&Profile], places: &[Vec<DVec2>]) -> Option<Contact> {
+    first_contact(places).and_then(|contact| confirmed(outlines, &contact))
 }
 
 /// A contact that is still there when both outlines are cut a thousand times finer: chords may meet where the
@@ -177,6 +186,6 @@ pub(super) fn show(number: f64) -> String {
     rounded.to_string()
 }
 
-fn place(point: DVec2) -> String {
+pub(super) fn place(point: DVec2) -> String {
     format!("[{}, {}]", show(point.x), show(point.y))
 }

@@ -7,7 +7,7 @@ use super::profile::show;
 use super::{Builder, placement};
 use crate::geometry::curve::{AnyCurve, Curve as _, Side};
 use crate::geometry::mesh;
-use crate::geometry::tessellate::{Extrusion, Revolution, Station, Sweep};
+use crate::geometry::tessellate::{Revolution, Station, Sweep};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, Count, Shape as Kind, ShapeDefinition, ShapeReference};
@@ -102,9 +102,9 @@ impl Builder<'_> {
             Kind::Sheet(sheet) => self.sheet(sheet).map(here),
             Kind::Polygon(polygon) => self.polygon(polygon, span).map(here),
             Kind::Wire(wire) => {
-                let curves: Vec<_> = wire.curves.iter().map(|curve| self.curve_of(curve)).collect();
+                let curves: Vec<_> = wire.curves.iter().map(|curve| self.parts_of(curve)).collect();
                 let curves: Option<Vec<_>> = curves.into_iter().collect();
-                curves.map(Recipe::Wire).map(here)
+                curves.map(|curves| here(Recipe::Wire(curves.concat())))
             }
             Kind::Mesh(mesh) => self.mesh(mesh, span).map(here),
             Kind::Import(import) => self.import(import, span).map(here),
@@ -147,23 +147,6 @@ impl Builder<'_> {
         let message = format!("this array makes {copies} copies, and the limit is {MOST}");
         self.report(Diagnostic::error(Code::LimitPassed, message).at(array.count.span, "too many"));
         None
-    }
-
-    fn extrusion(&mut self, extrude: &spec::Extrude) -> Option<Recipe> {
-        let outline = self.closed_profile(&extrude.profile, "outline");
-        let holes: Vec<_> = extrude.holes.iter().map(|hole| self.closed_profile(hole, "hole")).collect();
-        let holes: Option<Vec<_>> = holes.into_iter().collect();
-        let (outline, holes) = (outline?, holes?);
-        self.check_holes(&outline, &holes)?;
-        let height = extrude.height.value;
-        let mut outlines = vec![outline.curve];
-        outlines.extend(holes.into_iter().map(|hole| hole.curve));
-        Some(Recipe::Extrusion(Extrusion {
-            outlines,
-            bottom: if extrude.centered.value { -height / 2.0 } else { 0.0 },
-            height,
-            caps: extrude.caps.value,
-        }))
     }
 
     fn sweep(&mut self, sweep: &spec::Sweep) -> Option<Recipe> {

@@ -10,7 +10,7 @@ use super::project::{reason, task};
 use super::sample_curve::describe;
 use super::timed;
 use crate::compile::{self, Options};
-use crate::geometry::curve::{Curve, Domain, Side};
+use crate::geometry::curve::{AnyCurve, Curve, Domain, Side};
 use crate::geometry::surface::{ExtrudedSurface, FrameField, RevolvedSurface, Surface, SweptSurface};
 use crate::model::{Model, Recipe};
 
@@ -32,8 +32,8 @@ pub(crate) fn run(sample: &Sample, printer: &Printer) -> Outcome {
     let options =
         Options { overrides: sample.set.clone(), name: task.name().to_owned(), ..Options::default() };
     let found = document.and_then(|document| match (&sample.curve, &sample.shape) {
-        (Some(name), _) => compile::curve(&document, &files, &options, name)
-            .map(|curve| of_curve(name, curve.as_ref(), sample)),
+        (Some(name), _) => compile::curve_parts(&document, &files, &options, name)
+            .map(|parts| of_parts(name, parts.as_deref(), sample)),
         (None, Some(name)) => {
             compile::model(&document, &files, &options).map(|model| of_shape(name, &model, sample))
         }
@@ -59,12 +59,19 @@ fn numbers(vector: DVec3) -> Value {
     json!(vector.to_array())
 }
 
-fn of_curve(
-    name: &str,
-    curve: Option<&crate::geometry::curve::AnyCurve>,
-    sample: &Sample,
-) -> Result<Value, String> {
-    let curve = curve.ok_or_else(|| format!("there is no curve `{name}`"))?;
+/// One curve as it is; several parts as a list of curves.
+fn of_parts(name: &str, parts: Option<&[AnyCurve]>, sample: &Sample) -> Result<Value, String> {
+    match parts {
+        None | Some([]) => Err(format!("there is no curve `{name}`")),
+        Some([curve]) => of_curve(name, curve, sample),
+        Some(parts) => {
+            let parts: Result<Vec<_>, _> = parts.iter().map(|part| of_curve(name, part, sample)).collect();
+            Ok(json!({ "curve": name, "parts": parts? }))
+        }
+    }
+}
+
+fn of_curve(name: &str, curve: &AnyCurve, sample: &Sample) -> Result<Value, String> {
     if sample.time {
         return Ok(timed::of_curve(name, curve, sample.count));
     }

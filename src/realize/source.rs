@@ -333,13 +333,13 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
             }
         }
         Recipe::Extrusion(extrusion) => {
-            let outline = along(&extrusion.outlines[0]);
+            let outline = extrusion.outlines.iter().map(along).fold(Bounds::EMPTY, Bounds::union);
             Bounds {
                 min: outline.min.with_z(extrusion.bottom),
                 max: outline.max.with_z(extrusion.bottom + extrusion.height),
             }
         }
-        Recipe::Sheet(sheet) => along(&sheet.outlines[0]),
+        Recipe::Sheet(sheet) => sheet.outlines.iter().map(along).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Sweep(sweep) => {
             let (path, profile) = (along(&sweep.path), along(&sweep.profile));
             let reach = DVec3::splat(profile.reach());

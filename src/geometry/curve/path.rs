@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{AnyCurve, Curve, Domain, Jet, Side};
+use super::{AnyCurve, Curve, Domain, Jet, Polyline, Side};
 use crate::geometry::number::{Bounds, floor_index};
 
 /// How well two curves join.
@@ -84,6 +84,22 @@ impl Path {
         Some(path)
     }
 
+    /// A path of at least one curve that is closed: by a line where its end is not its start. A gap of rounding
+    /// alone stays; the end of the path is then its start all the same. `None` for no curve.
+    #[must_use]
+    pub fn closed(mut curves: Vec<AnyCurve>) -> Option<Self> {
+        /// Of the way around: sums of relative steps round by far less.
+        const ROUNDING: f64 = 1e-10;
+        let end = |curve: &AnyCurve| curve.evaluate(curve.domain().end, Side::Before).point;
+        let start = curves.first()?.evaluate(curves[0].domain().start, Side::After).point;
+        let last = end(curves.last()?);
+        let size = curves.iter().map(|curve| end(curve).distance(start)).fold(0.0, f64::max);
+        if last.distance(start) > ROUNDING * size {
+            curves.extend(Polyline::new(vec![last, start], false).map(AnyCurve::Polyline));
+        }
+        Self::new(curves).map(|path| Self { closed: true, ..path })
+    }
+
     fn find_joints(&self) -> Vec<Corner> {
         let mut joints = Vec::new();
         for (index, curve) in self.curves.iter().enumerate() {
@@ -154,7 +170,10 @@ impl Curve for Path {
         let curve = &self.curves[index];
         let jet = curve.evaluate(inner, side);
         let rate = curve.domain().span();
-        Jet { point: jet.point, first: jet.first * rate, second: jet.second * (rate * rate) }
+        // A closed path ends where it starts, to the bit.
+        let seam = self.closed && t >= self.curves.len() as f64 && self.curves.len() > 1;
+        let point = if seam { self.curves[0].point(self.curves[0].domain().start) } else { jet.point };
+        Jet { point, first: jet.first * rate, second: jet.second * (rate * rate) }
     }
 
     fn joints(&self) -> Vec<f64> {

@@ -13,11 +13,13 @@ use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh;
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex};
 
-/// A closed outline in the xy plane with holes, pushed from z = `bottom` to `bottom` + `height`.
+/// Closed outlines in the xy plane with holes, pushed from z = `bottom` to `bottom` + `height`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extrusion {
-    /// The outline first, then its holes; any sense of turning.
+    /// For each island its outline, then its holes; any sense of turning.
     pub outlines: Vec<AnyCurve>,
+    /// How many of the outlines belong to each island, in order.
+    pub islands: Vec<usize>,
     /// Least z, metres.
     pub bottom: f64,
     /// Height, more than zero.
@@ -47,8 +49,9 @@ pub fn extrude(shape: &Extrusion, detail: &Detail) -> Result<Tessellation, Tesse
     }
     let mut outlines = Vec::new();
     let mut needed = 0;
+    let firsts = firsts(&shape.islands);
     for (index, curve) in shape.outlines.iter().enumerate() {
-        let outline = cut(curve, index > 0, detail)?;
+        let outline = cut(curve, !firsts.contains(&index), detail)?;
         needed += 2 * (outline.stations.len() as u64 - 1) * (u64::from(layers) + 1);
         if needed > detail.triangle_limit {
             return Err(TessellateError::TooMany { needed, limit: detail.triangle_limit });
@@ -68,14 +71,27 @@ pub fn extrude(shape: &Extrusion, detail: &Detail) -> Result<Tessellation, Tesse
         let source = mesh::index(outlines.len());
         let (down, up) =
             (Facing { normal: DVec3::NEG_Z, mirrored: true }, Facing { normal: DVec3::Z, mirrored: false });
-        add_cap(&mut mesh, &ends.0, down, source, detail.uv)?;
-        add_cap(&mut mesh, &ends.1, up, source + 1, detail.uv)?;
+        for (first, count) in firsts.iter().zip(&shape.islands) {
+            let island = *first..first + count;
+            add_cap(&mut mesh, &ends.0[island.clone()], down, source, detail.uv)?;
+            add_cap(&mut mesh, &ends.1[island], up, source + 1, detail.uv)?;
+        }
     }
     mesh.runs = vec![Run { origin: 0, end: mesh::index(mesh.triangles.len()) }];
     let stations = outlines.iter().flat_map(|outline| &outline.stations);
     let bound = stations.map(|station| station.deviation).fold(0.0, f64::max);
     let evidence = if bound == 0.0 { Evidence::Exact } else { Evidence::Proved };
     Ok(Tessellation { mesh, deviation: Deviation { bound, evidence } })
+}
+
+/// Where each island begins among the outlines.
+fn firsts(islands: &[usize]) -> Vec<usize> {
+    let mut next = 0;
+    let begin = |count: &usize| {
+        next += count;
+        next - count
+    };
+    islands.iter().map(begin).collect()
 }
 
 pub(super) fn flat(stations: &[Station]) -> Vec<DVec2> {
@@ -221,6 +237,7 @@ mod tests {
                 AnyCurve::Polyline(Polyline::new(corners.to_vec(), true).unwrap()),
                 AnyCurve::Ellipse(EllipseArc::full(DVec3::new(1.0, 1.0, 0.0), 0.5, 0.5)),
             ],
+            islands: vec![2],
             bottom: 0.0,
             height: 1.0,
             caps: true,

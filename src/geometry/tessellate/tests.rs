@@ -172,7 +172,9 @@ fn extrusions_keep_the_laws() {
     for (name, outlines) in cases {
         for caps in [true, false] {
             for detail in details() {
-                let shape = Extrusion { outlines: outlines.clone(), bottom: -1.0, height: 2.0, caps };
+                let islands = vec![outlines.len()];
+                let shape =
+                    Extrusion { outlines: outlines.clone(), islands, bottom: -1.0, height: 2.0, caps };
                 let made = extrude(&shape, &detail).unwrap();
                 check(name, &made, &detail, caps);
                 if caps {

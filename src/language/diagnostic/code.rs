@@ -149,6 +149,12 @@ codes! {
     FormulaJump = "K0616";
     /// a formula changes too often to be followed
     FormulaWild = "K0617";
+    /// an SVG path cannot be read
+    SvgSyntax = "K0620";
+    /// a curve has several parts where one is needed
+    ManyParts = "K0621";
+    /// a curve has no part of that number
+    NoPart = "K0622";
 
     /// a face names a point that does not exist
     FaceIndex = "K0701";
@@ -196,6 +202,9 @@ codes! {
     StrayHole = "K0833";
     /// lines cannot show a texture
     TexturedWire = "K0834";
+
+    /// parts of a profile cross or touch each other
+    PartsMeet = "K0840";
 
     /// a file cannot be imported
     ImportFailed = "K0851";

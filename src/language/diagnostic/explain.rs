@@ -166,6 +166,14 @@ examples! {
     FormulaWild: "A formula is studied before it is used, so that no kink and no place without a value is missed. One with hundreds of thousands of waves is refused.",
         "[curve.a.formula]\ny = \"= abs(sin(1e9 * x))\"\nfrom = 0\nto = 360" =>
         "[curve.a.formula]\ny = \"= abs(sin(10 * x))\"\nfrom = 0\nto = 360\n[shape.s.sphere]\nradius = 1";
+    SvgSyntax: "The data of an SVG path is read to the end of its grammar, as a browser reads it, but a browser draws what stands before a fault and says nothing. The message names the character.",
+        "[curve.a.svg]\nd = \"M 0 0 L 10\"" => "[curve.a.svg]\nd = \"M 0 0 L 10 5\"";
+    ManyParts: "SVG paths and groups are curves of several parts. Extrude, sheet and wire take all of them; where one curve is needed, such as a path or a section, take one with `part`.",
+        "[curve.a.svg]\nd = \"M0 0H1 M0 1H1\"\n[shape.s.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = \"a\"" =>
+        "[curve.a.svg]\nd = \"M0 0H1 M0 1H1\"\n[shape.s.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = { part = { of = \"a\", index = 0 } }";
+    NoPart: "Parts are counted from 0. `kiln sample --curve NAME` shows all of them.",
+        "[curve.a.part]\nof = { circle = { radius = 1 } }\nindex = 1" =>
+        "[curve.a.part]\nof = { circle = { radius = 1 } }\nindex = 0\n[shape.s.sphere]\nradius = 1";
     FaceIndex: "A face names a point that is not in the list. Indices count from 0.",
         "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[1, 2, 3]]" =>
         "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[0, 1, 2]]";
@@ -229,6 +237,9 @@ examples! {
     TexturedWire: "A wire is made of lines, which have no surface for a texture. Give it a material with a plain color, or draw a thin profile along its curves with `sweep`.",
         "[material.m]\ncolor-texture = \"label.png\"\n[shape.a]\nmaterial = \"m\"\n[shape.a.wire]\ncurves = [{ circle = { radius = 1 } }]" =>
         "[material.m]\ncolor = \"#b5651d\"\n[shape.a]\nmaterial = \"m\"\n[shape.a.wire]\ncurves = [{ circle = { radius = 1 } }]";
+    PartsMeet: "Parts of a profile lie apart from each other or inside of each other. Where they cross it is not said what they enclose.",
+        "[shape.a.extrude]\nprofile = { group = { of = [{ circle = { radius = 1 } }, { circle = { radius = 1, center = [1, 0] } }] } }\nheight = 1" =>
+        "[shape.a.extrude]\nprofile = { group = { of = [{ circle = { radius = 1 } }, { circle = { radius = 1, center = [3, 0] } }] } }\nheight = 1";
     ImportFailed: "A file is damaged or cut off. The message names its line and value. Export it again.",
         "" => "";
     ImportNote: "Something in an imported file was passed over or put right; the notes say what and where.",

@@ -11,6 +11,7 @@ use crate::language::spec::conic::{Conic, Hyperbola, Parabola, check_turn};
 use crate::language::spec::construct::{kinds, table};
 use crate::language::spec::cubic::{BetaSpline, Cubic};
 use crate::language::spec::formula::FormulaCurve;
+use crate::language::spec::part::{CurveGroup, Part};
 use crate::language::spec::path::Path;
 use crate::language::spec::point::{Point, Scale};
 use crate::language::spec::reader::Reader;
@@ -19,6 +20,7 @@ use crate::language::spec::spanned::Sp;
 use crate::language::spec::spline::{Bezier, NaturalSpline, check_closed, report_repeated};
 use crate::language::spec::spline_end::{FunctionSpline, Spline};
 use crate::language::spec::subdivision_curve::SubdivisionCurve;
+use crate::language::spec::svg::Svg;
 use crate::language::spec::tangent::{Cardinal, CatmullRom, Hermite, KochanekBartels};
 
 kinds! {
@@ -72,6 +74,12 @@ kinds! {
         SubdivisionCurve(SubdivisionCurve) = "subdivision";
         /// Lines, arcs and splines joined end to end.
         Path(Path) = "path";
+        /// The path of an SVG drawing.
+        Svg(Svg) = "svg";
+        /// Several curves as the parts of one.
+        Group(CurveGroup) = "group";
+        /// One part of a curve that has several.
+        Part(Part) = "part";
         /// Another curve, run through from its end to its start.
         Reverse(Reverse) = "reverse";
         /// Another curve, scaled, rotated and moved.

@@ -7,6 +7,7 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::check::Check;
 use crate::language::spec::construct::table;
+use crate::language::spec::profile::Fill;
 use crate::language::spec::reader::{Read, Reader};
 use crate::language::spec::reference::CurveReference;
 use crate::language::spec::schema::{Schemas, any_of, array};
@@ -26,8 +27,11 @@ table! {
 table! {
     /// The flat face that a closed curve encloses, in the x, y plane. It looks to +z and has no thickness.
     "sheet" pub Sheet {
-        /// The outline: the name of a closed curve, or a curve in place.
+        /// The outline: the name of a closed curve, or a curve in place. A curve of several parts gives several faces
+        /// side by side: outlines, with the parts inside them as holes.
         profile: CurveReference;
+        /// Which parts of a profile of several are holes in others.
+        fill: Sp<Fill> = Fill::EvenOdd;
         /// Closed curves inside the outline that are cut out.
         holes: Vec<CurveReference> = Vec::new();
     }

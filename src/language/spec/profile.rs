@@ -28,8 +28,11 @@ table! {
 table! {
     /// A flat, closed profile drawn out along the z axis.
     "extrude" pub Extrude {
-        /// The outline in the x, y plane: the name of a closed curve, or a curve in place.
+        /// The outline in the x, y plane: the name of a closed curve, or a curve in place. A curve of several parts
+        /// gives several solids side by side: outlines, with the parts inside them as holes.
         profile: CurveReference;
+        /// Which parts of a profile of several are holes in others.
+        fill: Sp<Fill> = Fill::EvenOdd;
         /// Closed curves inside the outline that are cut out.
         holes: Vec<CurveReference> = Vec::new();
         /// How far it is drawn out along +z, in the document's unit.
@@ -59,6 +62,16 @@ table! {
         caps: Sp<bool> = true;
     }
     checked check
+}
+
+choices! {
+    /// What outlines that lie inside each other enclose.
+    Fill {
+        /// An outline inside another is a hole, one inside a hole an island, however they turn.
+        EvenOdd = "even-odd";
+        /// An outline inside another is a hole only if it turns the other way: what a browser does unless told.
+        NonZero = "nonzero";
+    }
 }
 
 choices! {

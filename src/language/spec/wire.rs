@@ -9,7 +9,7 @@ table! {
     /// material, without light; a material with textures cannot be shown. Corners of polylines are kept exactly,
     /// curved parts lie within the tolerance.
     "wire" pub Wire {
-        /// The curves, of any kind: their names, or curves in place. Closed ones are drawn back to their start.
+        /// The curves, of any kind and of any number of parts: their names, or curves in place. Closed ones are drawn back to their start.
         curves: Vec<CurveReference> => Check::items(1);
     }
 }
