@@ -9,6 +9,7 @@ mod drawings;
 mod glb;
 mod hostile;
 mod mutation;
+mod nets;
 mod patches;
 mod polygons;
 mod primitives;

@@ -6,3 +6,4 @@ mod curves;
 mod import;
 mod language;
 mod laws;
+mod surfaces;

@@ -94,19 +94,33 @@ fn with_knots<P: Control>(
     closed: bool,
     rule: Option<&Sp<KnotRule>>,
 ) -> Result<BSpline<P>, KnotError> {
-    let given = match rule.map(|rule| &rule.value) {
-        Some(KnotRule::Given(numbers)) => Some(numbers.iter().map(|number| number.value).collect::<Vec<_>>()),
-        _ => None,
-    };
-    if closed {
-        let even = || (0..=points.len()).map(|knot| knot as f64).collect();
-        return BSpline::closed(degree, &points, &given.unwrap_or_else(even));
+    let knots = knots(degree, points.len(), closed, rule)?;
+    let count = knots.points();
+    let points: Vec<P> = points.iter().cycle().take(count).copied().collect();
+    BSpline::new(knots, points).ok_or(KnotError::Few { least: degree + 1, found: count })
+}
+
+/// The knots that a rule gives for so many points; of what is closed, for as many more as the degree: the first
+/// points again.
+pub(super) fn knots(
+    degree: usize,
+    points: usize,
+    closed: bool,
+    rule: Option<&Sp<KnotRule>>,
+) -> Result<Knots, KnotError> {
+    let few = KnotError::Few { least: degree + 1, found: points };
+    let rule = rule.map(|rule| &rule.value);
+    if let Some(KnotRule::Given(numbers)) = rule {
+        let numbers: Vec<f64> = numbers.iter().map(|number| number.value).collect();
+        return if closed { Knots::periodic(degree, &numbers) } else { Knots::new(degree, numbers) };
     }
-    let few = KnotError::Few { least: degree + 1, found: points.len() };
-    let knots = match (given, rule.map(|rule| &rule.value)) {
-        (Some(numbers), _) => Knots::new(degree, numbers)?,
-        (None, Some(KnotRule::Uniform)) => Knots::uniform(degree, points.len()).ok_or(few)?,
-        (None, _) => Knots::clamped(degree, points.len()).ok_or(few)?,
+    if closed {
+        let even: Vec<f64> = (0..=points).map(|knot| knot as f64).collect();
+        return Knots::periodic(degree, &even);
+    }
+    let made = match rule {
+        Some(KnotRule::Uniform) => Knots::uniform(degree, points),
+        _ => Knots::clamped(degree, points),
     };
-    BSpline::new(knots, points).ok_or(few)
+    made.ok_or(few)
 }

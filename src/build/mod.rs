@@ -15,6 +15,7 @@ mod import;
 mod material;
 mod node;
 mod part;
+mod patch;
 mod polygon;
 mod primitive;
 mod profile;

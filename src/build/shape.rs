@@ -106,6 +106,10 @@ impl Builder<'_> {
                 let curves: Option<Vec<_>> = curves.into_iter().collect();
                 curves.map(|curves| here(Recipe::Wire(curves.concat())))
             }
+            Kind::Patches(patches) => self.patches(patches, span).map(here),
+            Kind::Hermite(surface) => self.hermite_surface(surface, span).map(here),
+            Kind::BSpline(surface) => self.b_spline_surface(surface, span).map(here),
+            Kind::Nurbs(surface) => self.nurbs_surface(surface, span).map(here),
             Kind::Mesh(mesh) => self.mesh(mesh, span).map(here),
             Kind::Import(import) => self.import(import, span).map(here),
             Kind::Copy(copy) => {

@@ -131,8 +131,8 @@ pub(crate) struct Sample {
     /// This many even steps over the domain
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
     pub(crate) count: u32,
-    /// Print only how many nanoseconds the curve takes for a point and its derivatives
-    #[arg(long, requires = "curve", conflicts_with = "at")]
+    /// Print only how many nanoseconds the curve, or the surface by control points, takes for a point and its derivatives
+    #[arg(long, conflicts_with = "at")]
     pub(crate) time: bool,
     /// Set a parameter of the document
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]

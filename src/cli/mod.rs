@@ -11,6 +11,7 @@ mod output;
 mod project;
 mod sample;
 mod sample_curve;
+mod sample_surface;
 mod starter;
 mod timed;
 mod told;

@@ -8,6 +8,7 @@ use super::arguments::Sample;
 use super::output::Printer;
 use super::project::{reason, task};
 use super::sample_curve::describe;
+use super::sample_surface::describe as describe_surfaces;
 use super::timed;
 use crate::compile::{self, Options};
 use crate::geometry::curve::{AnyCurve, Curve, Domain, Side};
@@ -99,6 +100,12 @@ fn of_shape(name: &str, model: &Model, sample: &Sample) -> Result<Value, String>
         let known: Vec<&str> = model.shapes.iter().map(|shape| shape.name.as_str()).collect();
         format!("there is no shape `{name}`; there is: {}", known.join(", "))
     })?;
+    if let Recipe::Patches(patches) = &shape.recipe {
+        if let (true, [surface]) = (sample.time, patches.surfaces.as_slice()) {
+            return Ok(timed::of_surface(name, surface, sample.count));
+        }
+        return describe_surfaces(name, &patches.surfaces, &|u, v| surface_places(sample, u, v));
+    }
     let (surface, frames) = surface(&shape.recipe)
         .ok_or_else(|| format!("shape `{name}` has no surface with parameters u and v"))?;
     let (domain_u, domain_v) = (surface.domain_u(), surface.domain_v());
@@ -149,9 +156,6 @@ fn surface(recipe: &Recipe) -> Option<(Box<dyn Surface>, Option<FrameField>)> {
             let surface = SweptSurface::new(sweep.profile.clone(), sweep.path.clone(), &sweep.carry);
             let frames = surface.frames.clone();
             Some((Box::new(surface), Some(frames)))
-        }
-        Recipe::Patches(patches) if patches.surfaces.len() == 1 => {
-            Some((Box::new(patches.surfaces[0].clone()), None))
         }
         _ => None,
     }

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::Window;
 use crate::geometry::curve::{Domain, Side};
-use crate::geometry::surface::{AnySurface, Surface, SurfaceJet};
+use crate::geometry::number::Bounds;
+use crate::geometry::surface::{AnySurface, Rim, Surface, SurfaceJet};
 
 /// A surface with what the search for its nearest points needs to know of it.
 #[derive(Clone, Debug)]
@@ -14,7 +15,16 @@ pub(super) struct Field {
     v: Domain,
     /// Whether opposite rims of u, and of v, are one line.
     closed: (bool, bool),
+    /// Points along each side, evenly in its parameter, and a box around all of them.
+    rims: [[DVec3; RIM_POINTS]; 4],
+    reach: Bounds,
 }
+
+/// Points along a side: between two of them a side is taken to come near a place only once.
+const RIM_POINTS: usize = 17;
+
+/// Share of a patch's size within which a written vertex lies on a side: some units of single precision.
+const ON_RIM: f64 = 3e-6;
 
 /// Corners on both sides of a seam: those after it count from the end of the domain on.
 fn unwrapped(values: [f64; 3], domain: Domain, closed: bool) -> [f64; 3] {
@@ -34,9 +44,66 @@ fn wrap(value: f64, domain: Domain) -> f64 {
 impl Field {
     pub(super) fn new(surface: &AnySurface) -> Self {
         let (u, v) = (surface.domain_u(), surface.domain_v());
-        let mut field = Self { surface: Box::new(surface.clone()), u, v, closed: (false, false) };
+        let rims = [[DVec3::ZERO; RIM_POINTS]; 4];
+        let surface = Box::new(surface.clone());
+        let mut field = Self { surface, u, v, closed: (false, false), rims, reach: Bounds::EMPTY };
         field.closed = field.find_closed();
+        field.rims = Rim::ALL
+            .map(|rim| std::array::from_fn(|k| field.rim_point(rim, k as f64 / (RIM_POINTS - 1) as f64)));
+        field.reach = Bounds::of_points(field.rims.iter().flatten().copied());
         field
+    }
+
+    fn rim_uv(&self, rim: Rim, share: f64) -> (f64, f64) {
+        let (x, y) = rim.place(share);
+        (self.u.at(x), self.v.at(y))
+    }
+
+    fn rim_point(&self, rim: Rim, share: f64) -> DVec3 {
+        let (u, v) = self.rim_uv(rim, share);
+        self.jet(u, v).point
+    }
+
+    /// Whether parameters are those of a side.
+    pub(super) fn on_rim(&self, (u, v): (f64, f64)) -> bool {
+        [self.u.start, self.u.end].contains(&u) || [self.v.start, self.v.end].contains(&v)
+    }
+
+    /// Parameters of a point that lies on a side but for rounding.
+    pub(super) fn rim_place(&self, point: DVec3) -> Option<(f64, f64)> {
+        let size = self.reach.diagonal();
+        // Between their points sides bulge by less than a tenth of their size, or come back.
+        let beyond = (self.reach.min - point).max(point - self.reach.max).max_element();
+        if beyond > 0.1 * size {
+            return None;
+        }
+        let nearest = Rim::ALL.into_iter().zip(&self.rims).map(|(rim, points)| {
+            let share = self.nearest_share(rim, points, point);
+            (self.rim_point(rim, share).distance(point), self.rim_uv(rim, share))
+        });
+        let (away, place) = nearest.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (away <= ON_RIM * size.max(point.length())).then_some(place)
+    }
+
+    /// The share of a side nearest to a point: by golden sections from the nearest of its points.
+    fn nearest_share(&self, rim: Rim, points: &[DVec3; RIM_POINTS], point: DVec3) -> f64 {
+        const GOLDEN: f64 = 0.618_033_988_749_895;
+        let last = (RIM_POINTS - 1) as f64;
+        let best = (0..RIM_POINTS)
+            .min_by(|a, b| points[*a].distance_squared(point).total_cmp(&points[*b].distance_squared(point)));
+        let best = best.unwrap_or(0) as f64;
+        let (mut low, mut high) = ((best - 1.0).max(0.0) / last, (best + 1.0).min(last) / last);
+        let away = |share: f64| self.rim_point(rim, share).distance_squared(point);
+        for _ in 0..40 {
+            let (a, b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+            if away(a) <= away(b) {
+                high = b;
+            } else {
+                low = a;
+            }
+        }
+        let middle = f64::midpoint(low, high);
+        [low, high].into_iter().fold(middle, |best, next| if away(next) < away(best) { next } else { best })
     }
 
     /// Distance from a point to the nearest point found on the surface around the parameters of a triangle. Never

@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec3};
 use super::nearest::Field;
 use super::shape::frame_map;
 use crate::geometry::curve::{AnyCurve, Curve as _, Side, nearest_within};
-use crate::geometry::mesh;
+use crate::geometry::mesh::{self, Anchor};
 use crate::geometry::number::{Bounds, hypot};
 use crate::geometry::surface::{AnySurface, Surface as _, SweptSurface};
 use crate::geometry::tessellate::{Density, RoundedBox, discretize};
@@ -45,7 +45,7 @@ enum Kind {
     Revolved(AnyCurve),
     Extruded(AnyCurve),
     Swept(Box<SweptSurface>),
-    Patch(Field),
+    Patch(Box<Field>),
     /// A curve by itself.
     Line(AnyCurve),
 }
@@ -59,6 +59,29 @@ impl Sources {
     #[must_use]
     pub fn get(&self, source: u32) -> Option<&Source> {
         self.0.get(source as usize)
+    }
+
+    /// The surfaces to which points of a triangle may be nearest, each with the corners' parameters there: its own,
+    /// and of patches those that a corner lies on too. A vertex between patches that look the same there is written
+    /// once, with the anchor of one of them; and what lies over a chord between two patches may be over either.
+    #[must_use]
+    pub fn around(&self, corners: &[Anchor; 3], places: &[DVec3; 3]) -> Vec<(&Source, Window)> {
+        let own = corners.map(|anchor| (anchor.u, anchor.v));
+        let Some(first) = self.get(corners[0].source) else { return Vec::new() };
+        let one = corners.iter().all(|anchor| anchor.source == corners[0].source);
+        if one && !first.touches_rims(&own) {
+            return vec![(first, Window::of(own))];
+        }
+        let mut found = Vec::new();
+        for (number, source) in self.0.iter().enumerate() {
+            let known = [0, 1, 2].map(|k| {
+                if corners[k].source as usize == number { Some(own[k]) } else { source.rim_place(places[k]) }
+            });
+            if let Some(any) = known.into_iter().flatten().next() {
+                found.push((source, Window::of(known.map(|place| place.unwrap_or(any)))));
+            }
+        }
+        found
     }
 
     /// Whether any of them is curved.
@@ -104,7 +127,7 @@ fn collect(model: &Model, handle: ShapeHandle, outer: &DAffine3, all: &mut Vec<S
             push(Kind::Exact);
         }
         Recipe::Patches(patches) => {
-            patches.surfaces.iter().for_each(|surface| push(Kind::Patch(Field::new(surface))));
+            patches.surfaces.iter().for_each(|surface| push(Kind::Patch(Box::new(Field::new(surface)))));
             patches.caps.iter().for_each(|_| push(Kind::Exact));
         }
         Recipe::Wire(curves) => curves.iter().for_each(|curve| push(Kind::Line(curve.clone()))),
@@ -123,6 +146,12 @@ pub struct Window {
     pub u: [f64; 3],
     /// v of each corner.
     pub v: [f64; 3],
+}
+
+impl Window {
+    fn of(corners: [(f64, f64); 3]) -> Self {
+        Self { u: corners.map(|(u, _)| u), v: corners.map(|(_, v)| v) }
+    }
 }
 
 /// Least and greatest parameter of the corners of a triangle. Where they stand on both sides of the seam of a
@@ -177,6 +206,17 @@ fn nearest_near(curve: &AnyCurve, point: DVec3, corners: [f64; 3]) -> (f64, f64)
 }
 
 impl Source {
+    /// Whether one of these places lies on a side of a patch, which others may have too.
+    fn touches_rims(&self, places: &[(f64, f64); 3]) -> bool {
+        matches!(&self.kind, Kind::Patch(field) if places.iter().any(|place| field.on_rim(*place)))
+    }
+
+    /// Parameters of a point of the written mesh that lies on a side of this patch.
+    fn rim_place(&self, point: DVec3) -> Option<(f64, f64)> {
+        let Kind::Patch(field) = &self.kind else { return None };
+        field.rim_place(self.back.transform_point3(point))
+    }
+
     /// Distance from a point of the written mesh to the nearest point of this surface near the
     /// parameters of a triangle: never less than the distance to the whole surface.
     #[must_use]

@@ -68,9 +68,14 @@ fn of_lines(geometry: &Geometry<'_>, known: &WrittenGeometry, sources: &Sources)
 fn of_triangle(triangle: usize, geometry: &Geometry<'_>, anchors: &[Anchor], sources: &Sources) -> f64 {
     let vertices = [0, 1, 2].map(|corner| geometry.indices.at(3 * triangle + corner) as usize);
     let corners = vertices.map(|vertex| anchors[vertex]);
-    let Some(source) = sources.get(corners[0].source) else { return 0.0 };
-    let window = Window { u: corners.map(|anchor| anchor.u), v: corners.map(|anchor| anchor.v) };
     let places = vertices.map(|vertex| DVec3::from_array(geometry.position(vertex).map(f64::from)));
     let at = |weights: &[f64; 3]| places[0] * weights[0] + places[1] * weights[1] + places[2] * weights[2];
-    SAMPLES.iter().map(|weights| source.distance(at(weights), &window)).fold(0.0, f64::max)
+    let around = sources.around(&corners, &places);
+    if around.is_empty() {
+        return 0.0;
+    }
+    let nearest = |point: DVec3| {
+        around.iter().map(|(source, window)| source.distance(point, window)).fold(f64::INFINITY, f64::min)
+    };
+    SAMPLES.iter().map(|weights| nearest(at(weights))).fold(0.0, f64::max)
 }

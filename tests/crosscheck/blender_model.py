@@ -1,7 +1,8 @@
 """Blender as an independent modeler: `blender_model.py REQUEST.json OUT.npz`, always a process of its own.
 
-A request names what to make: `screw` (a profile turned about the axis), `bevel` (a circle along a path), or
-`tangents` (MikkTSpace tangents of a .glb's only mesh, at its written vertices). Meshes come out in glTF's axes.
+A request names what to make: `screw` (a profile turned about the axis), `bevel` (a circle along a path), `nurbs` (a
+surface by control points), or `tangents` (MikkTSpace tangents of a .glb's only mesh, at its written vertices). Meshes
+come out in glTF's axes.
 """
 
 from __future__ import annotations
@@ -43,6 +44,36 @@ def bevel(request: dict[str, Any]) -> dict[str, np.ndarray]:
     return arrays(shown(curve))
 
 
+def nurbs(request: dict[str, Any]) -> dict[str, np.ndarray]:
+    """A bicubic NURBS surface from rows of points in glTF's axes and weights, the rows run by u."""
+    points, weights = np.array(request["points"]), np.array(request["weights"])
+    surface = bpy.data.curves.new("net", "SURFACE")
+    surface.dimensions = "3D"
+    for row in points:
+        line = surface.splines.new("NURBS")
+        line.points.add(len(row) - 1)
+        for at, (x, y, z) in zip(line.points, row, strict=True):
+            at.co, at.select = (x, -z, y, 1.0), True
+    item = shown(surface)
+    bpy.context.view_layer.objects.active = item
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.curve.make_segment()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    net = surface.splines[0]
+    rows, columns = points.shape[:2]
+    assert (net.point_count_u, net.point_count_v) == (rows, columns)
+    # In Blender's list its own u runs fastest, here from row to row.
+    for place, at in enumerate(net.points):
+        column, row = divmod(place, rows)
+        x, y, z = points[row, column]
+        at.co = (x, -z, y, weights[row, column])
+    net.order_u = net.order_v = 4
+    net.use_endpoint_u, net.use_endpoint_v = True, not request["cyclic"]
+    net.use_cyclic_v = request["cyclic"]
+    net.resolution_u = net.resolution_v = request["resolution"]
+    return arrays(item)
+
+
 def tangents(request: dict[str, Any]) -> dict[str, np.ndarray]:
     """Tangents (x, y, z, sign) in glTF's axes for each written vertex; `EMPTY` where no face reaches."""
     bpy.ops.import_scene.gltf(filepath=request["file"], merge_vertices=False)
@@ -78,5 +109,5 @@ def arrays(item: bpy.types.Object) -> dict[str, np.ndarray]:
 if __name__ == "__main__":
     request = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    made = {"screw": screw, "bevel": bevel, "tangents": tangents}[request["make"]](request)
+    made = {"screw": screw, "bevel": bevel, "nurbs": nurbs, "tangents": tangents}[request["make"]](request)
     np.savez(sys.argv[2], **made)

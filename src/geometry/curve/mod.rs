@@ -22,7 +22,7 @@ mod mapped;
 mod nearest;
 mod nielsen;
 mod path;
-mod pieces;
+pub(crate) mod pieces;
 mod polyline;
 mod rational;
 mod retimed;

@@ -6,7 +6,7 @@ use super::{Domain, Jet, Side};
 
 /// The parameters at which pieces begin and end, increasing; piece k covers those from k to k + 1.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Pieces {
+pub(crate) struct Pieces {
     breaks: Vec<f64>,
     /// Pieces for each unit of the parameter, on average.
     rate: f64,
@@ -14,34 +14,34 @@ pub(super) struct Pieces {
 
 impl Pieces {
     /// At least one piece; `None` when the parameters do not increase.
-    pub(super) fn new(breaks: Vec<f64>) -> Option<Self> {
+    pub(crate) fn new(breaks: Vec<f64>) -> Option<Self> {
         let increasing = breaks.windows(2).all(|pair| pair[0] < pair[1]);
         let last = breaks.len().checked_sub(2)? + 1;
         let rate = last as f64 / (breaks[last] - breaks[0]);
         increasing.then_some(Self { breaks, rate })
     }
 
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.breaks.len() - 1
     }
 
-    pub(super) fn domain(&self) -> Domain {
+    pub(crate) fn domain(&self) -> Domain {
         Domain { start: self.breaks[0], end: self.breaks[self.breaks.len() - 1] }
     }
 
     /// All parameters at which pieces begin and end.
-    pub(super) fn breaks(&self) -> &[f64] {
+    pub(crate) fn breaks(&self) -> &[f64] {
         &self.breaks
     }
 
     /// Those where one piece follows another.
-    pub(super) fn inner(&self) -> &[f64] {
+    pub(crate) fn inner(&self) -> &[f64] {
         &self.breaks[1..self.breaks.len() - 1]
     }
 
     /// The piece that holds `t`: O(1) where pieces are about equally long, else O(log pieces).
     #[inline]
-    pub(super) fn locate(&self, t: f64, side: Side) -> usize {
+    pub(crate) fn locate(&self, t: f64, side: Side) -> usize {
         match side {
             Side::After => self.count_where(t, |knot| knot <= t),
             Side::Before => self.count_where(t, |knot| knot < t),
@@ -69,24 +69,24 @@ impl Pieces {
 
     /// Length of a piece in the parameter.
     #[inline]
-    pub(super) fn span(&self, index: usize) -> f64 {
+    pub(crate) fn span(&self, index: usize) -> f64 {
         self.breaks[index + 1] - self.breaks[index]
     }
 
     /// Local parameter of `t` in piece `index`, 0 to 1.
     #[inline]
-    pub(super) fn local(&self, index: usize, t: f64) -> f64 {
+    pub(crate) fn local(&self, index: usize, t: f64) -> f64 {
         ((t - self.breaks[index]) / self.span(index)).clamp(0.0, 1.0)
     }
 
     /// The parameter at a local one of piece `index`.
-    pub(super) fn parameter(&self, index: usize, local: f64) -> f64 {
+    pub(crate) fn parameter(&self, index: usize, local: f64) -> f64 {
         self.breaks[index] * (1.0 - local) + self.breaks[index + 1] * local
     }
 
     /// Derivatives by the local parameter of a piece into those by the parameter.
     #[inline]
-    pub(super) fn scaled(&self, index: usize, jet: &Jet) -> Jet {
+    pub(crate) fn scaled(&self, index: usize, jet: &Jet) -> Jet {
         let rate = 1.0 / self.span(index);
         Jet { point: jet.point, first: jet.first * rate, second: jet.second * (rate * rate) }
     }
@@ -96,7 +96,7 @@ impl Pieces {
     ///
     /// A part lies within its own bound of its own chord, and that chord no further from the whole one than its
     /// ends. By continuity the curve passes every place along the chord, so the bound holds both ways.
-    pub(super) fn chord_deviation(
+    pub(crate) fn chord_deviation(
         &self,
         (from, to): (f64, f64),
         point: impl Fn(usize, f64) -> DVec3,
@@ -127,7 +127,7 @@ fn whole(number: f64) -> usize {
 }
 
 /// Distance from a point to a segment.
-pub(super) fn distance_to_segment(point: DVec3, (start, end): (DVec3, DVec3)) -> f64 {
+pub(crate) fn distance_to_segment(point: DVec3, (start, end): (DVec3, DVec3)) -> f64 {
     let along = end - start;
     let square = along.length_squared();
     let place = if square > 0.0 { ((point - start).dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
@@ -139,7 +139,7 @@ pub(super) fn distance_to_segment(point: DVec3, (start, end): (DVec3, DVec3)) ->
 ///
 /// Where the first derivative vanishes, the direction is that of the first leading term that does not, at an
 /// end, and that of the second derivative elsewhere.
-pub(super) fn direction_within(
+pub(crate) fn direction_within(
     jet: &Jet,
     local: f64,
     side: Side,
@@ -160,7 +160,7 @@ pub(super) fn direction_within(
 }
 
 /// Whether two unit directions differ by more than rounding.
-pub(super) fn turns(before: DVec3, after: DVec3) -> bool {
+pub(crate) fn turns(before: DVec3, after: DVec3) -> bool {
     // Directions that agree to this sine come from a smooth construction: rounding alone leaves about
     // 1e-14, a corner a person means starts far above.
     const SAME_DIRECTION: f64 = 1e-9;

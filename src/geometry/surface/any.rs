@@ -1,5 +1,6 @@
 //! One type for every kind of surface that is tessellated by its parameters.
 
+use super::tensor::{PolynomialSurface, RationalSurface};
 use super::{RuledSurface, SecondJet, SecondRange, Surface, SurfaceJet, TranslationalSurface};
 use crate::geometry::curve::{Domain, Side};
 
@@ -10,6 +11,10 @@ pub enum AnySurface {
     Ruled(Box<RuledSurface>),
     /// One curve moved along another.
     Translational(Box<TranslationalSurface>),
+    /// Polynomial patches by control points.
+    Polynomial(Box<PolynomialSurface>),
+    /// Rational patches by control points: NURBS.
+    Rational(Box<RationalSurface>),
 }
 
 macro_rules! each_kind {
@@ -17,6 +22,8 @@ macro_rules! each_kind {
         match $self {
             AnySurface::Ruled($surface) => $body,
             AnySurface::Translational($surface) => $body,
+            AnySurface::Polynomial($surface) => $body,
+            AnySurface::Rational($surface) => $body,
         }
     };
 }
@@ -52,5 +59,13 @@ impl Surface for AnySurface {
 
     fn joints_v(&self) -> Vec<f64> {
         each_kind!(self, surface => surface.joints_v())
+    }
+
+    fn breaks_u(&self) -> Vec<f64> {
+        each_kind!(self, surface => surface.breaks_u())
+    }
+
+    fn breaks_v(&self) -> Vec<f64> {
+        each_kind!(self, surface => surface.breaks_v())
     }
 }

@@ -7,17 +7,24 @@
 mod any;
 mod extruded;
 mod frame;
+mod joint;
 mod limit;
+mod measure;
 mod revolved;
+mod rim;
 mod ruled;
 mod second;
 mod swept;
+pub mod tensor;
 mod translational;
 
 pub use any::AnySurface;
 pub use extruded::ExtrudedSurface;
 pub use frame::{Carry, Frame, FrameField, FrameRule};
+pub use joint::{PatchContinuity, Smoothness, SurfaceJoint, SurfaceJoints, SurfaceLine, joints};
+pub use measure::{SurfaceMeasures, measure};
 pub use revolved::RevolvedSurface;
+pub use rim::Rim;
 pub use ruled::RuledSurface;
 pub use second::{SecondJet, SecondRange};
 pub use swept::{Section, SweptSurface};
@@ -78,5 +85,16 @@ pub trait Surface: Send + Sync {
     /// The same for v.
     fn joints_v(&self) -> Vec<f64> {
         Vec::new()
+    }
+
+    /// Values of u strictly inside the domain, increasing, where pieces meet: the joints, and where higher
+    /// derivatives may jump.
+    fn breaks_u(&self) -> Vec<f64> {
+        self.joints_u()
+    }
+
+    /// The same for v.
+    fn breaks_v(&self) -> Vec<f64> {
+        self.joints_v()
     }
 }

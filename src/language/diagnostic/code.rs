@@ -217,6 +217,19 @@ codes! {
     /// an imported file has no group or material of that name
     UnknownPart = "K0855";
 
+    /// rows of a grid differ in length
+    UnevenRows = "K0860";
+    /// a patch names a point that does not exist
+    PatchIndex = "K0861";
+    /// a patch has too few or too many points
+    PatchPoints = "K0862";
+    /// a grid does not hold whole patches
+    PatchGrid = "K0863";
+    /// patches that follow each other do not meet
+    PatchGap = "K0864";
+    /// patches do not join as smoothly as declared
+    BrokenSeam = "K0865";
+
     /// a limit would be passed
     LimitPassed = "K0901";
     /// the result has nothing to show

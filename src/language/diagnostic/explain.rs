@@ -128,7 +128,7 @@ examples! {
         "[limits]\ntriangles = 100_000_000" => "[limits]\ntriangles = 1_000_000";
     RepeatedPoints: "Two consecutive points are equal. A curve has no direction there, and a spline through them no parameter.",
         "[curve.a.polyline]\npoints = [[0, 0], [0, 0], [1, 0]]" => "[curve.a.polyline]\npoints = [[0, 0], [1, 0]]";
-    Degenerate: "What is written determines no curve, or copies that all stand in one place.",
+    Degenerate: "What is written determines no curve or surface, or copies that all stand in one place.",
         "[curve.a.arc]\npoints = [[0, 0], [1, 0], [2, 0]]" => "[curve.a.arc]\npoints = [[0, 0], [1, 1], [2, 0]]";
     WrongCount: "The number of items does not fit the other keys of the table.",
         "[curve.a.bezier]\npoints = [[0, 0], [1, 1], [2, 0]]" =>
@@ -250,6 +250,24 @@ examples! {
         "" => "";
     UnknownPart: "An imported file has no group or material of the name that is asked for; the notes list those it has.",
         "" => "";
+    UnevenRows: "A grid of control points is written row by row, and every row has equally many.",
+        "[shape.a.b-spline]\ndegree = 1\ncontrol = [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1], [2, 1, 0]]]" =>
+        "[shape.a.b-spline]\ndegree = 1\ncontrol = [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]]";
+    PatchIndex: "A patch chooses its control points by their numbers in `points`. They count from 0, or from 1 where `first = 1` is written.",
+        "[shape.a.patches]\ndegree = 1\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 1]]\npatches = [[1, 2, 3, 4]]" =>
+        "[shape.a.patches]\ndegree = 1\nfirst = 1\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 1]]\npatches = [[1, 2, 3, 4]]";
+    PatchPoints: "A patch of degree p by q has (p + 1) times (q + 1) control points: a bicubic one 16, row by row.",
+        "[shape.a.patches]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 1]]\npatches = [[0, 1, 2, 3]]" =>
+        "[shape.a.patches]\ndegree = 1\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 1]]\npatches = [[0, 1, 2, 3]]";
+    PatchGrid: "A grid holds whole patches: Bezier patches of degree 3 share their borders, so a row has 4, 7, 10, ... points, or 3, 6, 9, ... when closed. B-spline and Catmull-Rom patches lie between the inner points of four, and a row has 4, 5, 6, ... points.",
+        "[shape.a.patches]\ndegree = 2\ncontrol = [[[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]], [[0, 1, 0], [1, 1, 1], [2, 1, 1], [3, 1, 0]], [[0, 2, 0], [1, 2, 0], [2, 2, 0], [3, 2, 0]]]" =>
+        "[shape.a.patches]\ndegree = 2\ncontrol = [[[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 0], [1, 1, 1], [2, 1, 0]], [[0, 2, 0], [1, 2, 0], [2, 2, 0]]]";
+    PatchGap: "Patches in one grid must meet: where one ends the next begins. A basis given as a matrix does so at a certain `step` only: Bernstein polynomials at 3, B-splines at 1.",
+        "[shape.a.patches]\nbasis = [[-1, 3, -3, 1], [3, -6, 3, 0], [-3, 3, 0, 0], [1, 0, 0, 0]]\nstep = 1\ncontrol = [[[0, 1, 0], [1, 0, 0], [2, 0, 0], [3, 1, 0], [4, 0, 0]], [[0, 0, 1], [1, 0, 1], [2, 1, 1], [3, 0, 1], [4, 0, 1]], [[0, 0, 2], [1, 1, 2], [2, 0, 2], [3, 0, 2], [4, 1, 2]], [[0, 1, 3], [1, 0, 3], [2, 0, 3], [3, 1, 3], [4, 0, 3]]]" =>
+        "[shape.a.patches]\nbasis = [[-1, 3, -3, 1], [3, -6, 3, 0], [-3, 3, 0, 0], [1, 0, 0, 0]]\nstep = 3\ncontrol = [[[0, 1, 0], [1, 0, 0], [2, 0, 0], [3, 1, 0], [4, 0, 0], [5, 0, 0], [6, 1, 0]], [[0, 0, 1], [1, 0, 1], [2, 1, 1], [3, 0, 1], [4, 0, 1], [5, 1, 1], [6, 0, 1]], [[0, 0, 2], [1, 1, 2], [2, 0, 2], [3, 0, 2], [4, 1, 2], [5, 0, 2], [6, 0, 2]], [[0, 1, 3], [1, 0, 3], [2, 0, 3], [3, 1, 3], [4, 0, 3], [5, 0, 3], [6, 1, 3]]]";
+    BrokenSeam: "`continuity` states how smoothly patches must join. Tangent planes agree (G1) where the control points next to a side lie in one plane with it on both sides. `kiln sample --shape NAME FILE` lists all joints with their class and angle.",
+        "[shape.a.patches]\ndegree = [2, 1]\ncontinuity = \"G1\"\ncontrol = [[[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 1, 0], [4, 1, 0]], [[0, 0, 1], [1, 0, 1], [2, 0, 1], [3, 1, 1], [4, 1, 1]]]" =>
+        "[shape.a.patches]\ndegree = [2, 1]\ncontinuity = \"G1\"\ncontrol = [[[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 1, 0]], [[0, 0, 1], [1, 0, 1], [2, 0, 1], [3, 0, 1], [4, 1, 1]]]";
     LimitPassed: "The asset would have more triangles, vertices or bytes than [limits] or the machine's owner allows. Nothing was made: the count is known before memory is taken.",
         "[limits]\ntriangles = 100\n[shape.a.sphere]\nradius = 1" => "[shape.a]\nsegments = 8\n[shape.a.sphere]\nradius = 1\n[limits]\ntriangles = 200";
     NothingToShow: "A document needs a shape, and where it has nodes at least one of them must show one.",

@@ -116,6 +116,16 @@ impl Read for Basis {
         alternatives.push(rows);
         any_of(alternatives)
     }
+
+    fn written(&self) -> Option<Json> {
+        match self {
+            Self::Bezier => Some(json!(WORDS[0])),
+            Self::BSpline => Some(json!(WORDS[1])),
+            Self::CatmullRom => Some(json!(WORDS[2])),
+            Self::Hermite => Some(json!(WORDS[3])),
+            Self::Matrix(_) => None,
+        }
+    }
 }
 
 impl BetaSpline {

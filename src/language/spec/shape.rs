@@ -9,6 +9,8 @@ use crate::language::spec::construct::{choices, kinds, table};
 use crate::language::spec::import::Import;
 use crate::language::spec::kind::{Kinds, take_kind};
 use crate::language::spec::mesh::Mesh;
+use crate::language::spec::nurbs_surface::{BSplineSurface, NurbsSurface};
+use crate::language::spec::patch::{HermiteSurface, Patches};
 use crate::language::spec::point::{Scale, Segments};
 use crate::language::spec::polygon::{Polygon, Sheet};
 use crate::language::spec::primitive::{
@@ -124,6 +126,14 @@ kinds! {
         Polygon(Polygon) = "polygon";
         /// Curves as lines.
         Wire(Wire) = "wire";
+        /// Curved patches by control points.
+        Patches(Patches) = "patches";
+        /// A surface through points with given tangents.
+        Hermite(HermiteSurface) = "hermite";
+        /// A B-spline surface.
+        BSpline(BSplineSurface) = "b-spline";
+        /// A NURBS surface.
+        Nurbs(NurbsSurface) = "nurbs";
         /// Points and faces, written out.
         Mesh(Mesh) = "mesh";
         /// A model from a file.

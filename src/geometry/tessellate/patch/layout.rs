@@ -11,41 +11,8 @@ use glam::DVec3;
 use crate::geometry::curve::Side;
 use crate::geometry::mesh::weld::weld_near;
 use crate::geometry::number::Bounds;
+pub use crate::geometry::surface::Rim;
 use crate::geometry::surface::{AnySurface, SecondJet, Surface, SurfaceJet};
-
-/// A side of a rectangle of parameters. Its own parameter is the fraction of u (bottom, top) or v (left,
-/// right), from 0 to 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rim {
-    /// Least v.
-    Bottom,
-    /// Greatest u.
-    Right,
-    /// Greatest v.
-    Top,
-    /// Least u.
-    Left,
-}
-
-impl Rim {
-    /// All four, in the order of `Block::sides`.
-    pub const ALL: [Self; 4] = [Self::Bottom, Self::Right, Self::Top, Self::Left];
-
-    /// The fractions of u and v at a fraction of the rim.
-    pub(super) fn place(self, fraction: f64) -> (f64, f64) {
-        match self {
-            Self::Bottom => (fraction, 0.0),
-            Self::Right => (1.0, fraction),
-            Self::Top => (fraction, 1.0),
-            Self::Left => (0.0, fraction),
-        }
-    }
-
-    /// Whether u runs along it.
-    pub(super) fn along_u(self) -> bool {
-        matches!(self, Self::Bottom | Self::Top)
-    }
-}
 
 /// A smooth rectangle of one surface.
 pub(super) struct Block<'a> {
