@@ -7,6 +7,7 @@
 mod bspline;
 mod carry;
 mod conic;
+mod coons;
 mod curve;
 mod extrude;
 mod formula;

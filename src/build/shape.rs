@@ -110,6 +110,8 @@ impl Builder<'_> {
             Kind::Hermite(surface) => self.hermite_surface(surface, span).map(here),
             Kind::BSpline(surface) => self.b_spline_surface(surface, span).map(here),
             Kind::Nurbs(surface) => self.nurbs_surface(surface, span).map(here),
+            Kind::Coons(patch) => self.coons(patch).map(here),
+            Kind::Gordon(network) => self.gordon(network, span).map(here),
             Kind::Mesh(mesh) => self.mesh(mesh, span).map(here),
             Kind::Import(import) => self.import(import, span).map(here),
             Kind::Copy(copy) => {

@@ -1,5 +1,6 @@
 //! One type for every kind of surface that is tessellated by its parameters.
 
+use super::coons::{ThreeSidedSurface, TransfiniteSurface};
 use super::tensor::{PolynomialSurface, RationalSurface};
 use super::{RuledSurface, SecondJet, SecondRange, Surface, SurfaceJet, TranslationalSurface};
 use crate::geometry::curve::{Domain, Side};
@@ -15,6 +16,10 @@ pub enum AnySurface {
     Polynomial(Box<PolynomialSurface>),
     /// Rational patches by control points: NURBS.
     Rational(Box<RationalSurface>),
+    /// Through whole curves: Coons patches and networks.
+    Transfinite(Box<TransfiniteSurface>),
+    /// Through three curves.
+    ThreeSided(Box<ThreeSidedSurface>),
 }
 
 macro_rules! each_kind {
@@ -24,6 +29,8 @@ macro_rules! each_kind {
             AnySurface::Translational($surface) => $body,
             AnySurface::Polynomial($surface) => $body,
             AnySurface::Rational($surface) => $body,
+            AnySurface::Transfinite($surface) => $body,
+            AnySurface::ThreeSided($surface) => $body,
         }
     };
 }

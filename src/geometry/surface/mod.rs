@@ -5,6 +5,7 @@
 //! surface does not cross itself.
 
 mod any;
+pub mod coons;
 mod extruded;
 mod frame;
 mod joint;

@@ -229,6 +229,12 @@ codes! {
     PatchGap = "K0864";
     /// patches do not join as smoothly as declared
     BrokenSeam = "K0865";
+    /// sides of a patch do not meet
+    OpenSides = "K0870";
+    /// derivatives at a corner of a patch contradict each other
+    CornerConflict = "K0871";
+    /// curves make no network
+    BadNetwork = "K0872";
 
     /// a limit would be passed
     LimitPassed = "K0901";

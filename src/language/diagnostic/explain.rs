@@ -268,6 +268,15 @@ examples! {
     BrokenSeam: "`continuity` states how smoothly patches must join. Tangent planes agree (G1) where the control points next to a side lie in one plane with it on both sides. `kiln sample --shape NAME FILE` lists all joints with their class and angle.",
         "[shape.a.patches]\ndegree = [2, 1]\ncontinuity = \"G1\"\ncontrol = [[[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 1, 0], [4, 1, 0]], [[0, 0, 1], [1, 0, 1], [2, 0, 1], [3, 1, 1], [4, 1, 1]]]" =>
         "[shape.a.patches]\ndegree = [2, 1]\ncontinuity = \"G1\"\ncontrol = [[[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 1, 0]], [[0, 0, 1], [1, 0, 1], [2, 0, 1], [3, 0, 1], [4, 1, 1]]]";
+    OpenSides: "The sides of a patch stand in order around it and meet: each begins or ends where the next one does. The message prints how far the nearest ends are apart.",
+        "[shape.a.coons]\nsides = [{ line = { from = [0, 0], to = [1, 0] } }, { line = { from = [1, 0], to = [1, 1] } }, { line = { from = [1, 1], to = [0, 1] } }, { line = { from = [0, 1], to = [0, 0.1] } }]" =>
+        "[shape.a.coons]\nsides = [{ line = { from = [0, 0], to = [1, 0] } }, { line = { from = [1, 0], to = [1, 1] } }, { line = { from = [1, 1], to = [0, 1] } }, { line = { from = [0, 1], to = [0, 0] } }]";
+    CornerConflict: "At a corner of a bicubic patch the derivative across one side is the tangent of the side beside it, and where two sides say how the patch leaves them no `twist` can say otherwise.",
+        "[shape.a.coons]\nblend = \"bicubic\"\nsides = [{ curve = { line = { from = [0, 0], to = [1, 0] } }, cross = [0, 1, 1] }, { line = { from = [1, 0], to = [1, 1] } }, { line = { from = [1, 1], to = [0, 1] } }, { line = { from = [0, 1], to = [0, 0] } }]" =>
+        "[shape.a.coons]\nblend = \"bicubic\"\nsides = [{ curve = { line = { from = [0, 0], to = [1, 0] } }, cross = [0, 1, 0] }, { line = { from = [1, 0], to = [1, 1] } }, { line = { from = [1, 1], to = [0, 1] } }, { line = { from = [0, 1], to = [0, 0] } }]";
+    BadNetwork: "In a network each curve along u meets each curve along v, all in the order in which they are listed.",
+        "[shape.a.gordon]\nu = [{ line = { from = [0, 0, 0], to = [1, 0, 0] } }, { line = { from = [0, 1, 0], to = [1, 1, 0] } }]\nv = [{ line = { from = [0, 0, 0], to = [0, 1, 0] } }, { line = { from = [1, 0, 0.2], to = [1, 1, 0.2] } }]" =>
+        "[shape.a.gordon]\nu = [{ line = { from = [0, 0, 0], to = [1, 0, 0] } }, { line = { from = [0, 1, 0], to = [1, 1, 0] } }]\nv = [{ line = { from = [0, 0, 0], to = [0, 1, 0] } }, { line = { from = [1, 0, 0], to = [1, 1, 0] } }]";
     LimitPassed: "The asset would have more triangles, vertices or bytes than [limits] or the machine's owner allows. Nothing was made: the count is known before memory is taken.",
         "[limits]\ntriangles = 100\n[shape.a.sphere]\nradius = 1" => "[shape.a]\nsegments = 8\n[shape.a.sphere]\nradius = 1\n[limits]\ntriangles = 200";
     NothingToShow: "A document needs a shape, and where it has nodes at least one of them must show one.",

@@ -6,6 +6,7 @@ use serde_json::Value as Json;
 use crate::language::spec::check::Check;
 use crate::language::spec::combine::{Array, Copy, Group, Mirror};
 use crate::language::spec::construct::{choices, kinds, table};
+use crate::language::spec::coons::{Coons, Gordon};
 use crate::language::spec::import::Import;
 use crate::language::spec::kind::{Kinds, take_kind};
 use crate::language::spec::mesh::Mesh;
@@ -134,6 +135,10 @@ kinds! {
         BSpline(BSplineSurface) = "b-spline";
         /// A NURBS surface.
         Nurbs(NurbsSurface) = "nurbs";
+        /// A smooth patch over its sides.
+        Coons(Coons) = "coons";
+        /// A surface through a network of curves.
+        Gordon(Gordon) = "gordon";
         /// Points and faces, written out.
         Mesh(Mesh) = "mesh";
         /// A model from a file.
