@@ -12,6 +12,7 @@ mod hostile;
 mod mutation;
 mod nets;
 mod patches;
+mod paths;
 mod polygons;
 mod primitives;
 mod refusals;

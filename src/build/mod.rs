@@ -17,6 +17,7 @@ mod material;
 mod node;
 mod part;
 mod patch;
+mod path;
 mod polygon;
 mod primitive;
 mod profile;
@@ -85,6 +86,8 @@ struct Builder<'a> {
     materials: IndexMap<String, Option<MaterialHandle>>,
     images: IndexMap<String, Option<ImageHandle>>,
     curves: IndexMap<String, Option<Vec<AnyCurve>>>,
+    /// The definition that is being built, and whether what is built now only stands inside it.
+    within: Option<(String, bool)>,
 }
 
 impl<'a> Builder<'a> {
@@ -98,6 +101,7 @@ impl<'a> Builder<'a> {
             materials: Vec::new(),
             images: Vec::new(),
             nodes: Vec::new(),
+            paths: Vec::new(),
             limits: Limits {
                 triangles: spec.limits.triangles,
                 vertices: spec.limits.vertices,
@@ -116,6 +120,7 @@ impl<'a> Builder<'a> {
             materials: IndexMap::new(),
             images: IndexMap::new(),
             curves: IndexMap::new(),
+            within: None,
         }
     }
 

@@ -13,7 +13,9 @@ impl Builder<'_> {
             return known.clone();
         }
         let definition = self.spec.curves.get(name)?;
+        let outside = self.within.replace((name.to_owned(), false));
         let built = self.parts(&definition.value, definition.span);
+        self.within = outside;
         self.curves.insert(name.to_owned(), built.clone());
         built
     }
@@ -22,7 +24,15 @@ impl Builder<'_> {
     pub(super) fn parts_of(&mut self, reference: &CurveReference) -> Option<Vec<AnyCurve>> {
         match reference {
             CurveReference::Named(name) => self.named_parts(&name.value),
-            CurveReference::Inline(curve) => self.parts(&curve.value, curve.span),
+            CurveReference::Inline(curve) => {
+                let outside = self.within.clone();
+                if let Some((_, inline)) = &mut self.within {
+                    *inline = true;
+                }
+                let built = self.parts(&curve.value, curve.span);
+                self.within = outside;
+                built
+            }
         }
     }
 

@@ -20,7 +20,9 @@ impl Builder<'_> {
             return *known;
         }
         let definition = self.spec.shapes.get(name)?;
+        let outside = self.within.replace((name.to_owned(), true));
         let handle = self.shape(name, &definition.value, definition.span);
+        self.within = outside;
         self.shapes.insert(name.to_owned(), handle);
         handle
     }

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 
 use crate::geometry::curve::control::coefficients;
 use crate::geometry::curve::{
-    AnyCurve, BezierSpline, Curve, Jet, RationalSpline, Side, classify, length, lengths_at,
+    AnyCurve, BezierSpline, Curve, Jet, Meeting, RationalSpline, Side, length, lengths_at,
 };
 
 /// Domain, length, samples with derivatives and arc length, how the pieces meet, and their coefficients.
@@ -70,8 +70,7 @@ fn breaks(curve: &AnyCurve, size: f64) -> Value {
 }
 
 fn continuity(curve: &AnyCurve, before: f64, after: f64, size: f64) -> Value {
-    let found = classify(&curve.evaluate(before, Side::Before), &curve.evaluate(after, Side::After), size);
-    json!(format!("{found:?}"))
+    json!(Meeting::of(curve, before, after, size).continuity().to_string())
 }
 
 /// Coefficients of 1, (t - from), (t - from)^2, ... of each piece.

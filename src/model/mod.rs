@@ -14,6 +14,8 @@ pub use shape::{Density, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, Uv
 
 use glam::{DQuat, DVec3};
 
+use crate::geometry::curve::Path;
+
 /// From the document's unit and axes to metres with y up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
@@ -40,6 +42,15 @@ pub struct Node {
     pub rotation: DQuat,
     /// Applied first.
     pub scale: DVec3,
+}
+
+/// A path of the document.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedPath {
+    /// The name of the curve; of a path that is written inside another definition that one's name and a number.
+    pub name: String,
+    /// The path.
+    pub path: Path,
 }
 
 /// The most that may be made.
@@ -70,6 +81,8 @@ pub struct Model {
     pub images: Vec<Image>,
     /// Nodes; parents stand anywhere.
     pub nodes: Vec<Node>,
+    /// Paths, for the report of their joints.
+    pub paths: Vec<NamedPath>,
     /// The most that may be made.
     pub limits: Limits,
 }

@@ -7,10 +7,12 @@
 mod assertion;
 mod deviation;
 pub mod facts;
+mod joints;
 mod polygons;
 
 pub use assertion::{Check, Fault};
 pub use deviation::measure_deviation;
+pub use joints::JointFacts;
 
 use indexmap::IndexMap;
 use serde::Serialize;
@@ -45,6 +47,9 @@ pub struct Report {
     pub shapes: IndexMap<String, ShapeFacts>,
     /// Each node, in the order of the file.
     pub nodes: Vec<NodeFacts>,
+    /// The joints of each path of the document.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub paths: IndexMap<String, Vec<JointFacts>>,
     /// Each assertion of the document that holds.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub assertions: Vec<Check>,
@@ -218,6 +223,7 @@ pub fn measure(
         totals: totals(&file, &facts, written, &nodes),
         shapes: facts,
         nodes,
+        paths: joints::joints(model),
         assertions: Vec::new(),
     })
 }

@@ -17,6 +17,7 @@ mod four_point;
 mod helix;
 mod hermite;
 mod hyperbola;
+mod joint;
 mod length;
 mod mapped;
 mod nearest;
@@ -42,10 +43,11 @@ pub use hermite::{
     Bartels, EndRule, HermiteKnot, alpha_parameters, hermite, rational_hermite, through, through_closed,
 };
 pub use hyperbola::HyperbolaArc;
+pub use joint::{Continuity, Meeting};
 pub use length::{length, length_between, length_of_step, lengths_at};
 pub use mapped::{Reversed, Transformed};
 pub use nearest::{distance_within, nearest_within};
-pub use path::{Continuity, Path, classify};
+pub use path::Path;
 pub use polyline::Polyline;
 pub use rational::{RationalError, RationalSpline};
 pub use retimed::{Retimed, jumps};

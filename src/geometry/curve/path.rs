@@ -2,56 +2,8 @@
 
 use glam::DVec3;
 
-use super::{AnyCurve, Curve, Domain, Jet, Polyline, Side};
+use super::{AnyCurve, Continuity, Curve, Domain, Jet, Meeting, Polyline, Side};
 use crate::geometry::number::{Bounds, floor_index};
-
-/// How well two curves join.
-///
-/// Source: B. Barsky, T. `DeRose`, Geometric continuity of parametric curves, IEEE CG&A 10 (1990).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Continuity {
-    /// The ends do not meet.
-    Gap,
-    /// The ends meet.
-    G0,
-    /// Directions agree.
-    G1,
-    /// First derivatives agree.
-    C1,
-    /// Directions and curvatures agree.
-    G2,
-    /// First and second derivatives agree.
-    C2,
-}
-
-/// Classifies the joint between the end of one curve and the start of the next, with `size` the length that
-/// rounding is measured against.
-#[must_use]
-pub fn classify(before: &Jet, after: &Jet, size: f64) -> Continuity {
-    const ROUNDING: f64 = 1e-9;
-    if before.point.distance(after.point) > ROUNDING * size {
-        return Continuity::Gap;
-    }
-    let (first, second) = (before.first.normalize_or_zero(), after.first.normalize_or_zero());
-    if first == DVec3::ZERO || second == DVec3::ZERO || first.distance(second) > ROUNDING {
-        return Continuity::G0;
-    }
-    let speed = before.first.length().max(after.first.length());
-    let same_first = before.first.distance(after.first) <= ROUNDING * speed;
-    let bend = before.second.length().max(after.second.length());
-    if same_first && before.second.distance(after.second) <= ROUNDING * bend.max(speed) {
-        return Continuity::C2;
-    }
-    let curvature = |jet: &Jet| {
-        let speed = jet.first.length_squared();
-        let direction = jet.first / speed.sqrt();
-        (jet.second - direction * jet.second.dot(direction)) / speed
-    };
-    if curvature(before).distance(curvature(after)) * size <= ROUNDING * 1e3 {
-        return Continuity::G2;
-    }
-    if same_first { Continuity::C1 } else { Continuity::G1 }
-}
 
 /// Curves end to start; curve k covers parameters k to k + 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,7 +56,7 @@ impl Path {
         let mut joints = Vec::new();
         for (index, curve) in self.curves.iter().enumerate() {
             let domain = curve.domain();
-            if index > 0 && self.continuity(index) < Continuity::G1 {
+            if index > 0 && !self.meeting(index).holds(Continuity::G1) {
                 joints.push(Corner { t: index as f64, curve: index, inner: None });
             }
             joints.extend(curve.joints().into_iter().map(|inner| Corner {
@@ -124,16 +76,14 @@ impl Path {
 
     /// How the curve before joint `k` (1 to count - 1) meets the one after. At 0 the seam of a closed path.
     #[must_use]
-    pub fn continuity(&self, joint: usize) -> Continuity {
+    pub fn meeting(&self, joint: usize) -> Meeting {
         let count = self.curves.len();
-        let t = joint as f64;
-        let before = if joint == 0 { count as f64 } else { t };
-        let (before, after) = (self.evaluate(before, Side::Before), self.evaluate(t, Side::After));
+        let before = if joint == 0 { count } else { joint };
         let size = self.curves.iter().map(|curve| {
             let domain = curve.domain();
             curve.point(domain.start).distance(curve.evaluate(domain.end, Side::Before).point)
         });
-        classify(&before, &after, size.fold(0.0, f64::max))
+        Meeting::of(self, before as f64, joint as f64, size.fold(0.0, f64::max))
     }
 
     /// The curve of a parameter and its own parameter there.

@@ -74,7 +74,7 @@ mod tests {
 
     use super::{beta_spline, windows};
     use crate::geometry::curve::control::{BSpline, BasisMatrix, Knots};
-    use crate::geometry::curve::{Continuity, Curve, Side, classify};
+    use crate::geometry::curve::{Continuity, Curve, Meeting, Side};
 
     fn points() -> Vec<DVec3> {
         [(0.0, 0.0), (2.0, -0.5), (3.0, 1.0), (2.2, 2.5), (0.7, 2.2), (-0.6, 1.4)]
@@ -94,7 +94,7 @@ mod tests {
                     assert!((ratio / bias - 1.0).abs() < 1e-12, "{ratio}");
                     let expected =
                         if bias == 1.0 && tension == 0.0 { Continuity::C2 } else { Continuity::G2 };
-                    let found = classify(&before, &after, 5.0);
+                    let found = Meeting::of(&curve, t, t, 5.0).continuity();
                     assert!(found == expected || (bias == 1.0 && found == Continuity::G2), "{found:?}");
                 }
                 if !closed {

@@ -192,7 +192,7 @@ examples! {
     NoArea: "A profile on the axis, or an outline whose points lie on one line, sweeps no surface.",
         "[shape.a.revolve]\nprofile = { line = { from = [0, 0], to = [0, 1] } }" =>
         "[shape.a.revolve]\nprofile = { line = { from = [1, 0], to = [1, 1] } }";
-    BrokenJoint: "A joint of a path that is declared \"smooth\" is proved: both segments must have one direction there.",
+    BrokenJoint: "What is declared of a joint of a path is proved: at a \"smooth\" one both segments must have one direction, at \"C1\" one first derivative, at \"G2\" one curvature, at \"C2\" one second derivative.",
         "[curve.a.path]\nstart = [0, 0]\nsegments = [{ line = [[1, 0]] }, { line = [[1, 1]] }]\njoints = [\"smooth\"]" =>
         "[curve.a.path]\nstart = [0, 0]\nsegments = [{ line = [[1, 0]] }, { arc = { center = [1, 1], angle = 90 } }]\njoints = [\"smooth\"]\n[shape.b.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = \"a\"";
     Reversal: "Where a path turns back on itself a section has no plane to stand in. Round such a corner with an arc or a spline.",

@@ -10,6 +10,7 @@ use crate::language::spec::construct::{choices, kinds, table};
 use crate::language::spec::kind::{Kinds, take_kind};
 use crate::language::spec::point::Point;
 use crate::language::spec::reader::{Fields, Read, Reader};
+use crate::language::spec::reference::CurveReference;
 use crate::language::spec::schema::Schemas;
 use crate::language::spec::spanned::Sp;
 use crate::language::spec::spline::report_repeated;
@@ -22,8 +23,9 @@ table! {
         start: Sp<Point>;
         /// The segments, in order.
         segments: Vec<Sp<Segment>> => Check::items(1);
-        /// What each joint between segments is: a `"corner"`, or `"smooth"`, which is then proved. One for each
-        /// joint; one more, for the start, when the path is closed. Nothing is claimed of joints when none is written.
+        /// What each joint between segments is: a `"corner"`, of which nothing is claimed, or how well the segments
+        /// must meet (`"smooth"`, `"C1"`, `"G2"`, `"C2"`), which is then proved. One for each joint; one more, for
+        /// the start, when the path is closed. Nothing is claimed of joints when none is written.
         joints: Option<Sp<Vec<Sp<Joint>>>>;
         /// Whether it is closed; a line is added when the end is not the start.
         closed: Sp<bool> = false;
@@ -49,6 +51,8 @@ kinds! {
         Quadratic(Vec<Sp<Point>>) = "quadratic";
         /// A part of a circle.
         Arc(ArcSegment) = "arc";
+        /// Another curve, by name or in place, moved so that it starts where the segment before ends.
+        Curve(CurveReference) = "curve";
     }
 }
 
@@ -57,8 +61,14 @@ choices! {
     Joint {
         /// With a sharp edge.
         Corner = "corner";
-        /// With one common direction; an error where that does not hold.
+        /// With one common direction (G1).
         Smooth = "smooth";
+        /// With one common first derivative: direction and speed, where each segment takes one unit of the parameter.
+        C1 = "C1";
+        /// With one common direction and curvature, so that reflections do not break.
+        G2 = "G2";
+        /// With common first and second derivatives.
+        C2 = "C2";
     }
 }
 
@@ -79,10 +89,23 @@ pub enum ArcSegment {
         /// Degrees, counterclockwise where positive; from -360 to 360, not 0.
         angle: Sp<f64>,
     },
+    /// On in the direction of the segment before, to a point.
+    Onward {
+        /// The end.
+        to: Sp<Point>,
+    },
+    /// On in the direction of the segment before.
+    Turn {
+        /// The radius, greater than 0.
+        radius: Sp<f64>,
+        /// Degrees, to the left where positive; from -360 to 360, not 0.
+        angle: Sp<f64>,
+    },
 }
 
 table! {
-    /// A part of a circle from the current point of a path: either `through` and `to`, or `center` and `angle`.
+    /// A part of a circle from the current point of a path: `through` and `to`; or `center` and `angle`; or going on
+    /// in the direction of the segment before, `to` a point, or by `radius` and `angle`.
     "arc segment" pub(crate) ArcSegmentFields {
         /// A point between start and end.
         through: Option<Sp<Point>>;
@@ -90,7 +113,9 @@ table! {
         to: Option<Sp<Point>>;
         /// The center.
         center: Option<Sp<Point>>;
-        /// How far it turns about the center in degrees, counterclockwise where positive.
+        /// The radius of an arc that goes on in the direction of the segment before.
+        radius: Option<Sp<f64>> => Check::above(0.0);
+        /// How far it turns about the center in degrees: counterclockwise, to the left, where positive.
         angle: Option<Sp<f64>> => Check::within(-360.0, 360.0).other_than_zero();
     }
 }
@@ -115,15 +140,18 @@ impl Read for Segment {
 impl Read for ArcSegment {
     fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
         let fields = ArcSegmentFields::read(value, reader)?;
-        match (fields.through, fields.to, fields.center, fields.angle) {
-            (Some(through), Some(to), None, None) => Some(Self::Through { through, to }),
-            (None, None, Some(center), Some(angle)) => Some(Self::Center { center, angle }),
-            (through, to, center, angle) => {
-                let three_points = through.is_some() || to.is_some();
-                let circle = center.is_some() || angle.is_some();
-                let code = if three_points && circle { Code::Conflict } else { Code::MissingField };
-                let message = "an arc segment has either `through` and `to`, or `center` and `angle`";
-                reader.report(Diagnostic::error(code, message).at(value.span, "neither form"));
+        match (fields.through, fields.to, fields.center, fields.radius, fields.angle) {
+            (Some(through), Some(to), None, None, None) => Some(Self::Through { through, to }),
+            (None, Some(to), None, None, None) => Some(Self::Onward { to }),
+            (None, None, Some(center), None, Some(angle)) => Some(Self::Center { center, angle }),
+            (None, None, None, Some(radius), Some(angle)) => Some(Self::Turn { radius, angle }),
+            (through, to, center, radius, angle) => {
+                let points = through.is_some() || to.is_some();
+                let sizes = center.is_some() || radius.is_some() || angle.is_some();
+                let both = (points && sizes) || (center.is_some() && radius.is_some());
+                let code = if both { Code::Conflict } else { Code::MissingField };
+                let message = "an arc segment has either `through` and `to`, or `center` and `angle`, or goes on from the segment before with `to`, or with `radius` and `angle`";
+                reader.report(Diagnostic::error(code, message).at(value.span, "none of these forms"));
                 None
             }
         }
@@ -147,6 +175,8 @@ impl Segment {
             | Self::Quadratic(points) => points.iter().collect(),
             Self::Arc(ArcSegment::Through { through, to }) => vec![through, to],
             Self::Arc(ArcSegment::Center { center, .. }) => vec![center],
+            Self::Arc(ArcSegment::Onward { to }) => vec![to],
+            Self::Arc(ArcSegment::Turn { .. }) | Self::Curve(_) => Vec::new(),
         }
     }
 
@@ -167,7 +197,7 @@ impl Segment {
             | Self::BSpline(points) => (points.len(), 1),
             Self::Bezier(points) => (points.len(), 3),
             Self::Quadratic(points) => (points.len(), 2),
-            Self::Arc(_) => return true,
+            Self::Arc(_) | Self::Curve(_) => return true,
         };
         if count > 0 && count % multiple == 0 {
             return true;
@@ -243,6 +273,11 @@ fn check_step(current: Option<Sp<Point>>, segment: &Sp<Segment>, reader: &mut Re
         (Segment::Quadratic(points), Some(now)) => check_curves(now, points, 2, reader),
         (Segment::Arc(ArcSegment::Through { through, to }), Some(now)) => {
             check_three(&[now, *through, *to], segment.span, reader)
+        }
+        (Segment::Arc(ArcSegment::Onward { to }), Some(now)) if to.position == now.position => {
+            let report = Diagnostic::error(Code::RepeatedPoints, "this arc ends at the current point");
+            reader.report(report.at(to.span, "already there"));
+            false
         }
         (Segment::Arc(ArcSegment::Center { center, .. }), Some(now)) if center.position == now.position => {
             let report = Diagnostic::error(Code::Degenerate, "the center of this arc is the current point")
