@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::Builder;
+use super::moving::moving_extrusion;
 use super::profile::{Profile, meeting, place};
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::planar::{Contact, encloses, twice_area};
@@ -22,6 +23,9 @@ impl Builder<'_> {
     /// Flat regions, drawn out.
     pub(super) fn extrusion(&mut self, extrude: &Extrude) -> Option<Recipe> {
         let (outlines, islands) = self.islands(&extrude.profile, extrude.fill.value, &extrude.holes)?;
+        if let Some(moving) = moving_extrusion(extrude, (&outlines, &islands)) {
+            return Some(Recipe::Sweep(moving));
+        }
         let height = extrude.height.value;
         Some(Recipe::Extrusion(Extrusion {
             outlines,

@@ -55,12 +55,20 @@ impl Builder<'_> {
         }
     }
 
+    /// A profile that is closed.
+    pub(super) fn closed_profile(&mut self, reference: &CurveReference, what: &str) -> Option<Profile> {
+        let profile = self.profile(reference, what)?;
+        if profile.curve.is_closed() { Some(profile) } else { self.open_profile(&profile, what) }
+    }
+
     /// A curve as a profile that is closed.
     pub(super) fn closed_profile_of(&mut self, curve: AnyCurve, what: &str, span: Span) -> Option<Profile> {
         let profile = self.profile_of(curve, what, span)?;
-        if profile.curve.is_closed() {
-            return Some(profile);
-        }
+        if profile.curve.is_closed() { Some(profile) } else { self.open_profile(&profile, what) }
+    }
+
+    /// Refuses a profile because it is open.
+    pub(super) fn open_profile<T>(&mut self, profile: &Profile, what: &str) -> Option<T> {
         let (start, end) = (profile.stations[0].point, profile.stations[profile.stations.len() - 1].point);
         let message = format!("the {what} must be closed; its ends are {} apart", show(start.distance(end)));
         let report = Diagnostic::error(Code::OpenProfile, message)

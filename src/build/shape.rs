@@ -3,11 +3,9 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::primitive::primitive;
-use super::profile::show;
 use super::{Builder, placement};
-use crate::geometry::curve::{AnyCurve, Curve as _, Side};
 use crate::geometry::mesh;
-use crate::geometry::tessellate::{Revolution, Station, Sweep};
+use crate::geometry::tessellate::Revolution;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, Count, Shape as Kind, ShapeDefinition, ShapeReference};
@@ -88,6 +86,7 @@ impl Builder<'_> {
             | Kind::Plane(_)
             | Kind::Polyhedron(_)
             | Kind::Geodesic(_) => primitive(kind),
+            Kind::Revolve(revolve) if revolve.rise.value != 0.0 => self.screw(revolve).map(here),
             Kind::Revolve(revolve) => {
                 let profile = self.axial_profile(&revolve.profile)?;
                 Some(here(Recipe::Revolution(Revolution {
@@ -155,68 +154,6 @@ impl Builder<'_> {
         let message = format!("this array makes {copies} copies, and the limit is {MOST}");
         self.report(Diagnostic::error(Code::LimitPassed, message).at(array.count.span, "too many"));
         None
-    }
-
-    fn sweep(&mut self, sweep: &spec::Sweep) -> Option<Recipe> {
-        let profile = self.profile(&sweep.profile, "profile");
-        let path = self.curve_of(&sweep.path);
-        let (profile, path) = (profile?, path?);
-        self.check_path(&path, sweep.path.span())?;
-        let carry = self.carry(sweep, &path)?;
-        self.check_bends(&profile.stations, &path, sweep.path.span());
-        Some(Recipe::Sweep(Sweep { profile: profile.curve, path, carry, caps: sweep.caps.value }))
-    }
-
-    /// A path must not turn back: there the section would have no plane to stand in.
-    fn check_path(&mut self, path: &AnyCurve, span: Span) -> Option<()> {
-        const STEEPEST: f64 = 170.0;
-        let domain = path.domain();
-        let mut corners: Vec<(f64, f64)> = path.joints().into_iter().map(|t| (t, t)).collect();
-        if path.is_closed() {
-            corners.push((domain.end, domain.start));
-        }
-        for (end, start) in corners {
-            let (before, after) = (path.direction(end, Side::Before), path.direction(start, Side::After));
-            let turn =
-                crate::geometry::number::atan2(before.cross(after).length(), before.dot(after)).to_degrees();
-            if turn > STEEPEST {
-                let message = format!("the path turns back by {turn:.1} degrees at parameter {start}");
-                let report = Diagnostic::error(Code::Reversal, message)
-                    .at(span, format!("corners may turn by up to {STEEPEST} degrees"))
-                    .help("round the corner with an arc or a spline");
-                self.report(report);
-                return None;
-            }
-        }
-        Some(())
-    }
-
-    /// Warns where the section reaches beyond the center of a bend: the surface folds over itself there.
-    fn check_bends(&mut self, profile: &[Station], path: &AnyCurve, span: Span) {
-        // A prime, so that a path of many equal bends is not met at equal places.
-        const SAMPLES: u32 = 1021;
-        let reach = profile.iter().map(|station| station.point.truncate().length()).fold(0.0, f64::max);
-        let domain = path.domain();
-        let radius = |t: f64| {
-            let jet = path.evaluate(t, Side::After);
-            let speed = jet.first.length();
-            speed * speed * speed / jet.first.cross(jet.second).length()
-        };
-        let places = (0..SAMPLES).map(|k| domain.at((f64::from(k) + 0.5) / f64::from(SAMPLES)));
-        let tightest = places.map(|t| (radius(t), t)).filter(|(radius, _)| radius.is_finite());
-        let Some((radius, t)) = tightest.min_by(|a, b| a.0.total_cmp(&b.0)) else { return };
-        if radius < reach {
-            let message = format!(
-                "the section may be too wide for its path: it reaches {} to its sides, and the path bends with a radius of {} at parameter {}",
-                show(reach),
-                show(radius),
-                show(t)
-            );
-            let report = Diagnostic::warning(Code::TightBend, message)
-                .at(span, "bends more tightly than the section is wide")
-                .help("make the section smaller or the bend wider: beyond the center of the bend the surface folds over itself");
-            self.report(report);
-        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! `kiln sample`: points and derivatives as JSON, so that anyone can check the mathematics from outside.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use serde_json::{Value, json};
 
@@ -12,7 +14,7 @@ use super::sample_surface::describe as describe_surfaces;
 use super::timed;
 use crate::compile::{self, Options};
 use crate::geometry::curve::{AnyCurve, Curve, Domain, Side};
-use crate::geometry::surface::{ExtrudedSurface, FrameField, RevolvedSurface, Surface, SweptSurface};
+use crate::geometry::surface::{ExtrudedSurface, RevolvedSurface, Surface, SweptSurface, SweptWall};
 use crate::model::{Model, Recipe};
 
 pub(crate) fn run(sample: &Sample, printer: &Printer) -> Outcome {
@@ -106,7 +108,7 @@ fn of_shape(name: &str, model: &Model, sample: &Sample) -> Result<Value, String>
         }
         return describe_surfaces(name, &patches.surfaces, &|u, v| surface_places(sample, u, v));
     }
-    let (surface, frames) = surface(&shape.recipe)
+    let (surface, swept) = surface(&shape.recipe)
         .ok_or_else(|| format!("shape `{name}` has no surface with parameters u and v"))?;
     let (domain_u, domain_v) = (surface.domain_u(), surface.domain_v());
     let places = surface_places(sample, domain_u, domain_v)?;
@@ -119,8 +121,8 @@ fn of_shape(name: &str, model: &Model, sample: &Sample) -> Result<Value, String>
                 "point": numbers(jet.point), "du": numbers(jet.du), "dv": numbers(jet.dv),
                 "normal": numbers(jet.normal),
             });
-            if let Some(frames) = &frames {
-                place["frame"] = frame(frames, *v, domain_v);
+            if let Some(swept) = &swept {
+                place["frame"] = frame(swept, *v, domain_v);
             }
             place
         })
@@ -133,8 +135,11 @@ fn of_shape(name: &str, model: &Model, sample: &Sample) -> Result<Value, String>
     }))
 }
 
-/// The first surface of a recipe, and the frames that carry it if it has any.
-fn surface(recipe: &Recipe) -> Option<(Box<dyn Surface>, Option<FrameField>)> {
+/// A surface, and the whole that it belongs to where sections are carried.
+type Sampled = (Box<dyn Surface>, Option<Arc<SweptSurface>>);
+
+/// The first surface of a recipe.
+fn surface(recipe: &Recipe) -> Option<Sampled> {
     match recipe {
         Recipe::Revolution(revolution) => {
             let surface = RevolvedSurface {
@@ -153,16 +158,15 @@ fn surface(recipe: &Recipe) -> Option<(Box<dyn Surface>, Option<FrameField>)> {
             Some((Box::new(surface), None))
         }
         Recipe::Sweep(sweep) => {
-            let surface = SweptSurface::new(sweep.profile.clone(), sweep.path.clone(), &sweep.carry);
-            let frames = surface.frames.clone();
-            Some((Box::new(surface), Some(frames)))
+            let surface = Arc::new(sweep.surface());
+            Some((Box::new(SweptWall { surface: surface.clone(), outline: 0 }), Some(surface)))
         }
         _ => None,
     }
 }
 
-fn frame(frames: &FrameField, v: f64, domain: Domain) -> Value {
-    let frame = frames.at(v, if v >= domain.end { Side::Before } else { Side::After });
+fn frame(surface: &SweptSurface, v: f64, domain: Domain) -> Value {
+    let frame = surface.carrier.plane(v, if v >= domain.end { Side::Before } else { Side::After }).frame;
     json!({ "side": numbers(frame.side), "up": numbers(frame.up), "along": numbers(frame.along) })
 }
 

@@ -9,6 +9,7 @@ mod nearest;
 mod node;
 mod shape;
 mod source;
+mod swept;
 
 pub use source::{Source, Sources, Window, sources};
 

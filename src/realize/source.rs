@@ -1,21 +1,24 @@
 //! The exact surfaces behind a mesh, for measuring it.
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DVec3};
 
 use super::nearest::Field;
 use super::shape::frame_map;
-use crate::geometry::curve::{AnyCurve, Curve as _, Side, nearest_within};
+use crate::geometry::curve::{AnyCurve, Curve, Domain, Side, nearest_within};
 use crate::geometry::mesh::{self, Anchor};
 use crate::geometry::number::{Bounds, hypot};
-use crate::geometry::surface::{AnySurface, Surface as _, SweptSurface};
-use crate::geometry::tessellate::{Density, RoundedBox, discretize};
+use crate::geometry::surface::{AnySurface, Surface as _, SweptWall};
+use crate::geometry::tessellate::{Density, RoundedBox, Route, discretize};
 use crate::model::{Model, Recipe, ShapeHandle};
 
 /// How many surfaces the anchors of a recipe tell apart.
 pub(super) fn source_count(recipe: &Recipe) -> u32 {
     match recipe {
         Recipe::Cuboid { .. } => 6,
-        Recipe::Revolution(_) | Recipe::Sweep(_) => 3,
+        Recipe::Revolution(_) => 3,
+        Recipe::Sweep(sweep) => mesh::index(sweep.outlines.len()) + 2,
         Recipe::Extrusion(extrusion) => mesh::index(extrusion.outlines.len()) + 2,
         Recipe::Patches(patches) => mesh::index(patches.surfaces.len() + patches.caps.len()),
         Recipe::Polygons { .. }
@@ -44,7 +47,7 @@ enum Kind {
     Rounded(RoundedBox),
     Revolved(AnyCurve),
     Extruded(AnyCurve),
-    Swept(Box<SweptSurface>),
+    Swept(SweptWall),
     Patch(Box<Field>),
     /// A curve by itself.
     Line(AnyCurve),
@@ -121,8 +124,10 @@ fn collect(model: &Model, handle: ShapeHandle, outer: &DAffine3, all: &mut Vec<S
             push(Kind::Exact);
         }
         Recipe::Sweep(sweep) => {
-            let surface = SweptSurface::new(sweep.profile.clone(), sweep.path.clone(), &sweep.carry);
-            push(Kind::Swept(Box::new(surface)));
+            let surface = Arc::new(sweep.surface());
+            for outline in 0..sweep.outlines.len() {
+                push(Kind::Swept(SweptWall { surface: surface.clone(), outline }));
+            }
             push(Kind::Exact);
             push(Kind::Exact);
         }
@@ -156,8 +161,7 @@ impl Window {
 
 /// Least and greatest parameter of the corners of a triangle. Where they stand on both sides of the seam of a
 /// closed curve, those after it count from the end of the domain on.
-fn unwrapped(curve: &AnyCurve, corners: [f64; 3]) -> (f64, f64) {
-    let domain = curve.domain();
+pub(super) fn unwrapped(domain: Domain, closed: bool, corners: [f64; 3]) -> (f64, f64) {
     let wide = |values: [f64; 3]| {
         let low = values.into_iter().fold(f64::INFINITY, f64::min);
         let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
@@ -165,7 +169,7 @@ fn unwrapped(curve: &AnyCurve, corners: [f64; 3]) -> (f64, f64) {
     };
     let (low, high) = wide(corners);
     let half = domain.span() / 2.0;
-    if !curve.is_closed() || high - low <= half {
+    if !closed || high - low <= half {
         return (low, high);
     }
     wide(corners.map(|value| if value < domain.start + half { value + domain.span() } else { value }))
@@ -174,11 +178,11 @@ fn unwrapped(curve: &AnyCurve, corners: [f64; 3]) -> (f64, f64) {
 /// Ranges of a curve's parameter around those of a triangle's corners, as wide again to both sides: a chord
 /// lies inside its arc, and the point nearest to it may belong to the next. Around a closed curve the corners
 /// may stand on both sides of the seam, and a range that leaves the domain comes back at the other end.
-fn ranges(curve: &AnyCurve, corners: [f64; 3]) -> Vec<(f64, f64)> {
+fn ranges(curve: &impl Curve, corners: [f64; 3]) -> Vec<(f64, f64)> {
     let domain = curve.domain();
     let period = domain.span();
     let closed = curve.is_closed();
-    let (mut low, mut high) = unwrapped(curve, corners);
+    let (mut low, mut high) = unwrapped(domain, closed, corners);
     let margin = (high - low).max(1e-6 * period);
     // Each range is one stretch between stations or nearly so: over several a few samples might miss the place.
     let inside = |t: f64| t.clamp(domain.start, domain.end);
@@ -199,7 +203,7 @@ fn distance_near(curve: &AnyCurve, point: DVec3, corners: [f64; 3]) -> f64 {
 }
 
 /// Distance and parameter of the nearest point around the corners.
-fn nearest_near(curve: &AnyCurve, point: DVec3, corners: [f64; 3]) -> (f64, f64) {
+pub(super) fn nearest_near(curve: &impl Curve, point: DVec3, corners: [f64; 3]) -> (f64, f64) {
     let ranges = ranges(curve, corners);
     let found = ranges.iter().map(|(from, to)| nearest_within(curve, point, *from, *to));
     found.fold((f64::INFINITY, corners[0]), |best, next| if next.0 < best.0 { next } else { best })
@@ -234,93 +238,12 @@ impl Source {
                 let flat = DVec3::new(local.x, local.y, 0.0);
                 distance_near(outline, flat, window.u)
             }
-            Kind::Swept(surface) => swept_distance(surface, local, window),
+            Kind::Swept(wall) => super::swept::distance(wall, local, window),
             Kind::Patch(surface) => surface.distance(local, window),
             Kind::Line(curve) => distance_near(curve, local, window.u),
         };
         away * super::shape::stretch(&self.map.matrix3)
     }
-}
-
-/// The section that holds the point is found by Newton's method on its place along the path; the rest is a
-/// distance in the plane of that section. Behind a mitre the surface goes on straight until it meets the other
-/// side, so at a corner what is left along the path does not count.
-fn swept_distance(surface: &SweptSurface, point: DVec3, window: &Window) -> f64 {
-    let joints = surface.path.joints();
-    let domain = surface.path.domain();
-    let (low, high) = unwrapped(&surface.path, window.v);
-    let corner_below = joints.iter().copied().filter(|t| *t <= low).fold(f64::NEG_INFINITY, f64::max);
-    let corner_above = joints.iter().copied().filter(|t| *t >= high).fold(f64::INFINITY, f64::min);
-    let margin = high - low;
-    let seam = surface.path.is_closed();
-    let stretch = Stretch {
-        low: (low - margin).max(corner_below).max(domain.start),
-        high: (high + margin).min(corner_above).min(domain.end),
-        open_below: corner_below >= low - margin || (seam && low - margin <= domain.start),
-        open_above: corner_above <= high + margin || (seam && high + margin >= domain.end),
-    };
-    swept_within(surface, point, &stretch, window.u)
-}
-
-/// A smooth stretch of a path; at an open end it stops at a corner or a seam.
-struct Stretch {
-    low: f64,
-    high: f64,
-    open_below: bool,
-    open_above: bool,
-}
-
-fn swept_within(surface: &SweptSurface, point: DVec3, stretch: &Stretch, across: [f64; 3]) -> f64 {
-    let side = |v: f64| if v >= stretch.high { Side::Before } else { Side::After };
-    let mut v = (stretch.low + stretch.high) / 2.0;
-    for _ in 0..12 {
-        let section = surface.section(v, side(v));
-        let away = point - section.origin;
-        let lean = 1.0 - away.dot(section.curvature);
-        if lean <= 0.0 {
-            break;
-        }
-        let step = away.dot(section.frame.along) / (section.speed * lean);
-        v = (v + step).clamp(stretch.low, stretch.high);
-    }
-    let section = surface.section(v, side(v));
-    let away = point - section.origin;
-    let flat = DVec3::new(away.dot(section.frame.side), away.dot(section.frame.up), 0.0);
-    let (across, u) = nearest_near(&surface.profile, flat, across);
-    let along = away.dot(section.frame.along);
-    let beyond = (stretch.open_above && v == stretch.high && along > 0.0)
-        || (stretch.open_below && v == stretch.low && along < 0.0);
-    let found = if beyond { across } else { hypot(across, along) };
-    if section.twist == 0.0 { found } else { found.min(leaning_distance(surface, point, stretch, (u, v))) }
-}
-
-/// A twisted surface leans against the planes of its sections: the nearest point is looked for along both
-/// parameters, by Gauss and Newton's method from a point near by.
-fn leaning_distance(
-    surface: &SweptSurface,
-    point: DVec3,
-    stretch: &Stretch,
-    (mut u, mut v): (f64, f64),
-) -> f64 {
-    let domain = surface.domain_u();
-    let mut nearest = f64::INFINITY;
-    for _ in 0..8 {
-        let jet = surface.evaluate(u, v);
-        let away = point - jet.point;
-        if away.length() >= nearest {
-            break;
-        }
-        nearest = away.length();
-        let (uu, uv, vv) = (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());
-        let (by_u, by_v) = (away.dot(jet.du), away.dot(jet.dv));
-        let determinant = uu * vv - uv * uv;
-        if determinant <= 0.0 {
-            break;
-        }
-        u = (u + (by_u * vv - by_v * uv) / determinant).clamp(domain.start, domain.end);
-        v = (v + (by_v * uu - by_u * uv) / determinant).clamp(stretch.low, stretch.high);
-    }
-    nearest
 }
 
 /// A box around each shape of a model, its placement applied, in the document's unit.
@@ -381,9 +304,23 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
         }
         Recipe::Sheet(sheet) => sheet.outlines.iter().map(along).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Sweep(sweep) => {
-            let (path, profile) = (along(&sweep.path), along(&sweep.profile));
-            let reach = DVec3::splat(profile.reach());
-            Bounds { min: path.min - reach, max: path.max + reach }
+            let curves = sweep.outlines.iter().flatten().map(along).fold(Bounds::EMPTY, Bounds::union);
+            let scale = sweep.change.scale.greatest().max_element();
+            match &sweep.route {
+                Route::Path { path, .. } => {
+                    let (path, reach) = (along(path), DVec3::splat(curves.reach() * scale));
+                    Bounds { min: path.min - reach, max: path.max + reach }
+                }
+                Route::Screw(screw) => {
+                    let radius = curves.max.x * scale;
+                    let (low, high) = (curves.min.y * scale, curves.max.y * scale);
+                    let (down, up) = (screw.rise.min(0.0), screw.rise.max(0.0));
+                    Bounds {
+                        min: DVec3::new(-radius, low + down, -radius),
+                        max: DVec3::new(radius, high + up, radius),
+                    }
+                }
+            }
         }
         Recipe::Patches(patches) => patches.surfaces.iter().map(lattice).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Wire(curves) => curves.iter().map(along).fold(Bounds::EMPTY, Bounds::union),

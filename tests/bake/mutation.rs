@@ -73,7 +73,7 @@ segments = [6, 24]
 [shape.knot.sweep]
 profile = { ellipse = { radii = [0.2, 0.1] } }
 path = { natural-spline = { points = [[1, 0, 0], [0, 1, 1], [-1, 0, 0], [0, -1, -1]], closed = true } }
-twist = 90
+twist = 180
 [shape.bent.sweep]
 profile = { arc = { points = [[0.1, 0], [0, 0.1], [-0.1, 0]] } }
 path = { path = { start = [0, 0], segments = [{ line = [[1, 0], [2, 1]] }, { quadratic = [[3, 2], [4, 0]] }, { arc = { center = [4, -1], angle = -120 } }] } }

@@ -38,3 +38,53 @@ fn every_rule_of_frames_makes_closed_shapes_within_their_bound() {
         }
     }
 }
+
+const LINE: &str = "path = { line = { from = [0, 0, 0], to = [0, 2, 0] } }";
+const HELIX: &str = "path = { helix = { radius = 1, pitch = 0.8, turns = 1.5 } }";
+const BENT: &str =
+    "path = { natural-spline = { points = [[0, 0, 0], [1, 0.4, 0], [1, 1.3, 1], [0, 1, 1.5]] } }";
+const CORNERED: &str = "path = { polyline = { points = [[0, 0, 0], [2, 0, 0], [2, 2, 0], [2, 2, 2]] } }";
+
+const CIRCLE: &str = "profile = { circle = { radius = 0.2 } }";
+const BAR: &str = "profile = { polyline = { points = [[-0.2, -0.1], [0.2, -0.1], [0.2, 0.1], [-0.2, 0.1]], closed = true } }";
+const STRIP: &str = "profile = { line = { from = [-0.2, 0], to = [0.2, 0.05] } }";
+const DUCT: &str = "profiles = [{ polyline = { points = [[-0.2, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.2, 0.2]], closed = true } }, { circle = { radius = 0.15 } }]";
+const STAR: &str = "profiles = [{ circle = { radius = 0.1 } }, { polyline = { points = { count = 10, each = \"= [(0.1 + 0.1 * (i % 2)) * cos(36 * i), (0.1 + 0.1 * (i % 2)) * sin(36 * i)]\" }, closed = true } }, { ellipse = { radii = [0.2, 0.1] } }, { circle = { radius = 0.05 } }]\nblend = \"smooth\"";
+
+const CHANGES: [&str; 8] = [
+    "",
+    "scale = 0",
+    "scale = 2.5",
+    "scale = [0, 1, 0.5, 0]",
+    "scale = [{ at = 0, factor = 0.3 }, { at = 0.7, factor = 1 }, { at = 1, factor = 0 }]",
+    "scale = [{ at = 0, factor = [1, 0.2] }, { at = 0.7, factor = [0.2, 1] }, { at = 1, factor = [1, 0.1] }]",
+    "scale = { arc = { center = [0, 0], radius = 1, from = 90, to = 0 } }",
+    "scale = { natural-spline = { points = [[0, 1], [0.2, 0.4], [0.6, 1.2], [1, 0.3]] } }",
+];
+
+/// Every profile along every path, each under other changes: solid, without a triangle that has no area, within its
+/// bound.
+#[test]
+fn sections_that_change_keep_their_bound() {
+    let mut failed = Vec::new();
+    for (row, path) in [LINE, HELIX, BENT, CORNERED].into_iter().enumerate() {
+        for (column, profile) in [CIRCLE, BAR, STRIP, DUCT, STAR].into_iter().enumerate() {
+            for (change, twist) in [(5 * row + column, 0), (3 * row + column + 2, 150)] {
+                let change = CHANGES[change % CHANGES.len()];
+                let text = format!(
+                    "tolerance = 0.01\n[shape.a.sweep]\n{profile}\n{path}\n{change}\ntwist = {twist}\n"
+                );
+                let baked = bake(&text);
+                let (facts, deviation) = (&baked.only().facts, baked.only().deviation);
+                let solid = profile != STRIP;
+                let measured = deviation.measured.expect("asked for");
+                let within = measured <= deviation.bound && deviation.bound <= 0.01;
+                let whole = (facts.closed, facts.degenerate_triangles) == (solid, 0);
+                if !within || !whole || !baked.compiled.warnings.is_empty() {
+                    failed.push(format!("{text}{facts:?}\n{deviation:?}\n{}", baked.compiled.warnings));
+                }
+            }
+        }
+    }
+    assert!(failed.is_empty(), "{} of 40\n{}", failed.len(), failed.join("\n"));
+}

@@ -35,9 +35,9 @@ fn fields_carry_type_bounds_default_and_words_for_artists() {
     assert_eq!(revolve["additionalProperties"], false);
     let angle = &revolve["properties"]["angle"];
     assert_eq!(angle["type"], serde_json::json!(["number", "string"]));
-    assert_eq!((&angle["exclusiveMinimum"], &angle["maximum"]), (&0.0.into(), &360.0.into()));
+    assert_eq!((&angle["exclusiveMinimum"], &angle["maximum"]), (&0.0.into(), &360_000.0.into()));
     assert_eq!(angle["default"], 360.0);
-    assert_eq!(angle["description"], "How far it is turned, in degrees.");
+    assert_eq!(angle["description"], "How far it is turned, in degrees; more than 360 needs a `rise`.");
     assert_eq!(schema["$defs"]["revolve-partial"].get("required"), None);
     let size = &schema["$defs"]["box"]["properties"]["size"];
     assert_eq!((&size["minItems"], &size["maxItems"]), (&3.into(), &3.into()));
@@ -56,7 +56,7 @@ fn the_reference_page_lists_every_table_once() {
         assert_eq!(page.matches(&format!("\n### {name}\n")).count(), 1, "{name}");
     }
     assert!(
-        page.contains("| `angle` | number > 0, ≤ 360 | `360` | How far it is turned, in degrees. |"),
+        page.contains("| `angle` | number > 0, ≤ 360000 | `360` | How far it is turned, in degrees; more than 360 needs a `rise`. |"),
         "{page}"
     );
     assert!(

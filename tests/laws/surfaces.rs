@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 use kiln::geometry::curve::{AnyCurve, Domain};
-use kiln::geometry::surface::{Carry, ExtrudedSurface, FrameRule, RevolvedSurface, Surface, SweptSurface};
+use kiln::geometry::surface::{Carry, ExtrudedSurface, FrameRule, RevolvedSurface, Surface, SweptWall};
+use kiln::geometry::tessellate::Sweep;
+use std::sync::Arc;
 
 use super::{Dice, curves};
 
@@ -12,6 +14,11 @@ fn curve(name: &str) -> AnyCurve {
         .find(|(known, _)| known == name)
         .map(|(_, curve)| curve)
         .expect("a curve of the list")
+}
+
+fn swept(profile: AnyCurve, path: AnyCurve, carry: &Carry) -> SweptWall {
+    let surface = Arc::new(Sweep::plain(profile, path, *carry).surface());
+    SweptWall { surface, outline: 0 }
 }
 
 /// How exactly the tangents of a kind of surface are known.
@@ -49,7 +56,7 @@ fn surfaces() -> Vec<Subject> {
                 (" by Frenet", FrameRule::Frenet),
                 (" upright", FrameRule::Up(up)),
             ] {
-                let surface = SweptSurface::new(curve("wire"), curve(path), &Carry { rule, twist });
+                let surface = swept(curve("wire"), curve(path), &Carry { rule, twist });
                 let name = format!("an arc along {path}{rule_name}, twisted by {twist}");
                 // Frames are those of the exact field to about 1e-9 at each end of a step.
                 all.push(Subject { name, surface: Box::new(surface), exactness: 1e-5 });

@@ -18,11 +18,16 @@ pub fn distance_within(curve: &impl Curve, point: DVec3, from: f64, to: f64) -> 
 pub fn nearest_within(curve: &impl Curve, point: DVec3, from: f64, to: f64) -> (f64, f64) {
     const SAMPLES: u32 = 8;
     let at = |k: u32| from + (to - from) * f64::from(k) / f64::from(SAMPLES);
-    let square = |t: f64| curve.evaluate(t, Side::Before).point.distance_squared(point);
-    let best = (0..=SAMPLES).min_by(|a, b| square(at(*a)).total_cmp(&square(at(*b)))).unwrap_or(0);
+    let square = |t: f64| curve.point(t).distance_squared(point);
+    let (mut best, mut nearest) = (0, f64::INFINITY);
+    for k in 0..=SAMPLES {
+        let found = square(at(k));
+        if found < nearest {
+            (best, nearest) = (k, found);
+        }
+    }
     let (low, high) = (at(best.saturating_sub(1)), at((best + 1).min(SAMPLES)));
     let mut t = at(best);
-    let mut nearest = square(t);
     for _ in 0..8 {
         let jet = curve.evaluate(t, Side::Before);
         let away = jet.point - point;

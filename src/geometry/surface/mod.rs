@@ -28,7 +28,10 @@ pub use revolved::RevolvedSurface;
 pub use rim::Rim;
 pub use ruled::RuledSurface;
 pub use second::{SecondJet, SecondRange};
-pub use swept::{Section, SweptSurface};
+pub use swept::{
+    Carrier, Change, Law, Matched, Mix, Outline, Plane, Screw, Section, SectionPoint, Slope, Spot, Stand,
+    Stations, SweptSurface, SweptWall,
+};
 pub use translational::TranslationalSurface;
 
 use glam::DVec3;

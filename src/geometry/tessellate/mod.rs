@@ -32,7 +32,7 @@ pub use plane::{FlatPlane, plane};
 pub use revolve::{Revolution, revolve};
 pub use rounded::{RoundedBox, rounded_box};
 pub use sheet::{Sheet, sheet};
-pub use sweep::{Sweep, sweep};
+pub use sweep::{Route, Sweep, sweep};
 pub use wire::wire;
 
 use thiserror::Error;

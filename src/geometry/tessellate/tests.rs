@@ -207,7 +207,7 @@ fn sweeps_keep_the_laws() {
             for twist in [0.0, 90.0] {
                 for detail in details() {
                     let carry = Carry { twist, ..Carry::PLAIN };
-                    let shape = Sweep { profile: profile.clone(), path: path.clone(), carry, caps: true };
+                    let shape = Sweep::plain(profile.clone(), path.clone(), carry);
                     if twist != 0.0 && matches!(*path_name, "knot" | "frame") {
                         continue;
                     }
@@ -215,7 +215,9 @@ fn sweeps_keep_the_laws() {
                     if coarse && (path_name.contains("knot") || *path_name == "helix") {
                         continue;
                     }
-                    let made = sweep(&shape, &detail).unwrap();
+                    let made = sweep(&shape, &detail).unwrap_or_else(|e| {
+                        panic!("{section_name} along {path_name} by {twist} {detail:?} {e:?}")
+                    });
                     check(&format!("{section_name} along {path_name} by {twist}"), &made, &detail, solid);
                     if solid {
                         assert!(volume(&made) > 0.0, "{section_name} along {path_name}");

@@ -185,6 +185,18 @@ codes! {
     BeyondPrecision = "K0811";
     /// a path runs along the direction that is to be up
     AlongUp = "K0812";
+    /// a section does not come back to itself around a closed path
+    UnmetSeam = "K0813";
+    /// a curve of factors does not run from 0 to 1
+    BadFactors = "K0814";
+    /// profiles of one section are closed and open
+    MixedProfiles = "K0815";
+    /// a profile that rises runs along the axis
+    AlongAxis = "K0816";
+    /// a turn of a screw reaches into the next
+    TurnsMeet = "K0817";
+    /// a sweep runs into another part of itself
+    SelfOverlap = "K0818";
 
     /// an open and a closed curve cannot be joined
     OpenAndClosed = "K0820";

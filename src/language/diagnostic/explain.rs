@@ -221,6 +221,24 @@ examples! {
     NoFlatEnd: "Solids between closed curves end in flat faces, so these curves must be flat and enclose an area. Leave the faces out with `caps = false`, or close the end with a shape of its own.",
         "[shape.a.ruled]\nfrom = { polyline = { points = [[0, 0], [1, 0, 1], [1, 1], [0, 1, 1]], closed = true } }\nto = [0, 0, 4]" =>
         "[shape.a.ruled]\nfrom = { polyline = { points = [[0, 0], [1, 0, 1], [1, 1], [0, 1, 1]], closed = true } }\nto = [0, 0, 4]\ncaps = false";
+    UnmetSeam: "Around a closed path the section comes back to where it began. There it must be what it was: of the same size, the same profile, and turned so that it lies on itself - by whole turns, or by a part of a turn that the profile's own symmetry allows.",
+        "[shape.a.sweep]\nprofile = { ellipse = { radii = [0.2, 0.1] } }\npath = { circle = { radius = 1 } }\ntwist = 90" =>
+        "[shape.a.sweep]\nprofile = { ellipse = { radii = [0.2, 0.1] } }\npath = { circle = { radius = 1 } }\ntwist = 180";
+    BadFactors: "A curve of factors says how large a section is at each share of its way: x is the share and must increase from 0 to 1, y is the factor and must not be negative.",
+        "[shape.a.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = { line = { from = [0, 0, 0], to = [0, 1, 0] } }\nscale = { line = { from = [0, 1], to = [2, 0] } }" =>
+        "[shape.a.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = { line = { from = [0, 0, 0], to = [0, 1, 0] } }\nscale = { line = { from = [0, 1], to = [1, 0] } }";
+    MixedProfiles: "A section that changes along its way is closed everywhere or open everywhere: between a ring and a strip there is no section that is either.",
+        "[shape.a.sweep]\nprofiles = [{ circle = { radius = 0.1 } }, { line = { from = [-0.1, 0], to = [0.1, 0] } }]\npath = { line = { from = [0, 0, 0], to = [0, 1, 0] } }" =>
+        "[shape.a.sweep]\nprofiles = [{ circle = { radius = 0.1 } }, { ellipse = { radii = [0.1, 0.01] } }]\npath = { line = { from = [0, 0, 0], to = [0, 1, 0] } }";
+    AlongAxis: "A profile that rises while it turns about the axis sweeps a surface wherever it is off the axis. What runs along the axis itself only glides along itself.",
+        "[shape.a.revolve]\nprofile = { polyline = { points = [[0, 0], [1, 0], [1, 1], [0, 1]], closed = true } }\nangle = 720\nrise = 4" =>
+        "[shape.a.revolve]\nprofile = { polyline = { points = [[0.1, 0], [1, 0], [1, 1], [0.1, 1]], closed = true } }\nangle = 720\nrise = 4";
+    TurnsMeet: "After a full turn a screw stands above where it began, by what one turn rises. A profile that is higher than that cuts into the turn before.",
+        "[shape.a.revolve]\nprofile = { circle = { radius = 0.2, center = [1, 0] } }\nangle = 1080\nrise = 1" =>
+        "[shape.a.revolve]\nprofile = { circle = { radius = 0.2, center = [1, 0] } }\nangle = 1080\nrise = 1.5";
+    SelfOverlap: "Two parts of a sweep that are far apart along its path stand in the same place: a coil with too little pitch, a path that crosses itself. The surface cuts itself there, and the volume of what is in both counts twice.",
+        "[shape.a.sweep]\nprofile = { circle = { radius = 0.3 } }\npath = { helix = { radius = 2, pitch = 0.5, turns = 2 } }" =>
+        "[shape.a.sweep]\nprofile = { circle = { radius = 0.3 } }\npath = { helix = { radius = 2, pitch = 0.65, turns = 2 } }";
     DoesNotFit: "Each measure of a shape is right by itself, but they do not go together: a rounding wider than its box, a hole wider than its tube.",
         "[shape.a.box]\nsize = [4, 1, 4]\nradius = 0.6" => "[shape.a.box]\nsize = [4, 1, 4]\nradius = 0.4";
     AlongUp: "With `frame = \"up\"` the profile stands upright across its path. Where the path itself runs along `up`, no way of standing is more upright than another, and just beside that place the profile would spin.",

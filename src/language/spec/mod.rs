@@ -35,6 +35,7 @@ mod reference;
 mod resolve;
 mod ruled;
 mod scalar;
+mod scaling;
 mod schema;
 mod section;
 mod shape;
@@ -43,6 +44,7 @@ mod spline;
 mod spline_end;
 mod subdivision_curve;
 mod svg;
+mod sweep;
 mod tangent;
 mod whole;
 mod wire;
@@ -76,15 +78,17 @@ pub use primitive::{
     Base, BoxShape, Capsule, Cone, Cylinder, Disk, Geodesic, GeodesicClass, PlaneShape, Polyhedron, Pose,
     Solid, Sphere, Torus, Tube,
 };
-pub use profile::{Extrude, Fill, Frame, Revolve, Sweep};
+pub use profile::{Extrude, Fill, Revolve};
 pub use reference::{CurveReference, Family, MaterialName, NodeName, ShapeName, ShapeReference};
 pub use ruled::{End, Ruled, Translational};
+pub use scaling::{Blend, Factor, ScaleStation, Scaling};
 pub use shape::{Shape, ShapeDefinition, ShapeOptions, Smoothing, Uv};
 pub use spanned::Sp;
 pub use spline::{Bezier, NaturalSpline, Parameters};
 pub use spline_end::{FunctionSpline, Spline, SplineEnd};
 pub use subdivision_curve::{CurveScheme, SubdivisionCurve};
 pub use svg::{Subpath, Svg, SvgArc, SvgPath, SvgSegment};
+pub use sweep::{Frame, ProfileStation, Sweep};
 pub use tangent::{Cardinal, CatmullRom, ChordPower, EndRule, Hermite, KochanekBartels, PerPoint};
 pub use whole::schema;
 pub use wire::Wire;

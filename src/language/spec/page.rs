@@ -70,6 +70,8 @@ const CHAPTERS: [(&str, &str, &[&str]); 5] = [
             "revolve",
             "extrude",
             "sweep",
+            "profile station",
+            "scale station",
             "ruled",
             "translational",
             "sheet",

@@ -1,6 +1,4 @@
-//! Shapes made from curves: revolve, extrude, sweep.
-
-use glam::DVec3;
+//! Shapes made from profiles: revolve, extrude.
 
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
@@ -8,20 +6,43 @@ use crate::language::spec::check::Check;
 use crate::language::spec::construct::{choices, table};
 use crate::language::spec::reader::Reader;
 use crate::language::spec::reference::CurveReference;
+use crate::language::spec::scaling::{Factor, keeps_width};
 use crate::language::spec::spanned::Sp;
+use crate::language::value::show_number;
 
 table! {
     /// A profile turned about the y axis: x of the profile is the radius, y goes along the axis.
     "revolve" pub Revolve {
         /// The profile: the name of a curve, or a curve in place. Its x must not be negative.
         profile: CurveReference;
-        /// How far it is turned, in degrees.
-        angle: Sp<f64> = 360.0 => Check::above(0.0).up_to(360.0);
+        /// How far it is turned, in degrees; more than 360 needs a `rise`.
+        angle: Sp<f64> = 360.0 => Check::above(0.0).up_to(360_000.0);
         /// Where the turn starts, in degrees from +x.
         start: Sp<f64> = 0.0 => Check::within(-360.0, 360.0);
         /// Whether a part turn gets flat faces at its two ends. They need a profile that encloses an area: one that is
         /// closed, or runs from the axis to the axis.
         caps: Sp<bool> = true;
+        /// How far it climbs along the axis over the whole turn, in the document's unit: `angle = 1800, rise = 0.01` is a
+        /// thread of five turns. With a rise only closed profiles get flat ends, and none may run along the axis.
+        rise: Sp<f64> = 0.0;
+    }
+    checked check
+}
+
+impl Revolve {
+    fn check(&self, _: Span, reader: &mut Reader<'_>) -> bool {
+        if self.angle.value <= 360.0 || self.rise.value != 0.0 {
+            return true;
+        }
+        let message = format!(
+            "`angle` must be greater than 0 and at most 360, found {}",
+            show_number(self.angle.value)
+        );
+        let report = Diagnostic::error(Code::OutOfRange, message)
+            .at(self.angle.span, "more than a full turn")
+            .help("with a `rise`, as of a screw, it may turn further");
+        reader.report(report);
+        false
     }
 }
 
@@ -41,25 +62,12 @@ table! {
         caps: Sp<bool> = true;
         /// Whether it reaches from -height / 2 to height / 2, instead of from 0 to height.
         centered: Sp<bool> = false;
-    }
-}
-
-table! {
-    /// A profile drawn along a curve: x of the profile runs to the side, y up.
-    "sweep" pub Sweep {
-        /// The profile: the name of a curve, or a curve in place.
-        profile: CurveReference;
-        /// The curve that it is drawn along.
-        path: CurveReference;
-        /// How the profile is carried along the path.
-        frame: Sp<Frame> = Frame::RotationMinimizing;
-        /// With `frame = "up"`, the direction; the document's own up when it is not written. The path must not run along
-        /// it.
-        up: Option<Sp<DVec3>>;
-        /// How far the profile turns about the path from start to end, in degrees.
+        /// How far the upper end is turned against the lower one about the z axis, in degrees, counter-clockwise as seen
+        /// from above.
         twist: Sp<f64> = 0.0 => Check::within(-1e6, 1e6);
-        /// Whether both ends are closed with flat caps, so that the result is a solid.
-        caps: Sp<bool> = true;
+        /// How large the upper end is, about the z axis: `0.5` is half as large as the lower end, `[1, 0.5]` is narrower
+        /// along y alone, 0 is a tip.
+        taper: Option<Sp<Factor>> => Check::at_least(0.0);
     }
     checked check
 }
@@ -74,35 +82,8 @@ choices! {
     }
 }
 
-choices! {
-    /// How a profile is carried along a path.
-    Frame {
-        /// It turns about the path no more than the path itself makes it.
-        RotationMinimizing = "rotation-minimizing";
-        /// Its x looks to the center of the bend. After an inflection it looks from the center, so that nothing jumps;
-        /// straight parts turn evenly from the bend before to the one after.
-        Frenet = "frenet";
-        /// Its y is as near to the direction of `up` as can be: for handrails, roads, mouldings.
-        Up = "up";
-    }
-}
-
-impl Sweep {
+impl Extrude {
     fn check(&self, _: Span, reader: &mut Reader<'_>) -> bool {
-        let Some(up) = self.up else { return true };
-        if self.frame.value != Frame::Up {
-            let message = format!("`up` has no meaning with `frame = \"{}\"`", self.frame.text());
-            let report = Diagnostic::error(Code::Conflict, message)
-                .at(up.span, "only for frame = \"up\"")
-                .help("write `frame = \"up\"`, or leave `up` out");
-            reader.report(report);
-            return false;
-        }
-        if up.value == DVec3::ZERO {
-            let report = Diagnostic::error(Code::OutOfRange, "`up` must not be [0, 0, 0]");
-            reader.report(report.at(up.span, "no direction"));
-            return false;
-        }
-        true
+        self.taper.as_ref().is_none_or(|taper| keeps_width(taper, reader))
     }
 }

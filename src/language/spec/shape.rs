@@ -17,12 +17,13 @@ use crate::language::spec::polygon::{Polygon, Sheet};
 use crate::language::spec::primitive::{
     BoxShape, Capsule, Cone, Cylinder, Disk, Geodesic, PlaneShape, Polyhedron, Sphere, Torus, Tube,
 };
-use crate::language::spec::profile::{Extrude, Revolve, Sweep};
+use crate::language::spec::profile::{Extrude, Revolve};
 use crate::language::spec::reader::{Fields, Read, Reader};
 use crate::language::spec::reference::MaterialName;
 use crate::language::spec::ruled::{Ruled, Translational};
 use crate::language::spec::schema::Schemas;
 use crate::language::spec::spanned::Sp;
+use crate::language::spec::sweep::Sweep;
 use crate::language::spec::wire::Wire;
 use crate::language::value::Value;
 
