@@ -2,6 +2,7 @@
 
 mod curves;
 mod equations;
+mod patches;
 mod surfaces;
 
 use kiln::compile::{self, Options};

@@ -13,6 +13,7 @@ mod extrude;
 mod formula;
 mod formula_curve;
 mod import;
+mod loft;
 mod material;
 mod moving;
 mod node;

@@ -98,7 +98,8 @@ impl Builder<'_> {
         None
     }
 
-    fn check_tip(&mut self, from: &AnyCurve, span: Span, tip: DVec3, at: Span) -> Option<()> {
+    /// A tip must not lie on the line that its curve follows.
+    pub(super) fn check_tip(&mut self, from: &AnyCurve, span: Span, tip: DVec3, at: Span) -> Option<()> {
         let curve = Retimed::unit(from.clone());
         let jets: Vec<_> = places().map(|t| curve.evaluate(t, Side::After)).collect();
         let size = Bounds::of_points(jets.iter().map(|jet| jet.point).chain([tip])).diagonal();
@@ -156,7 +157,7 @@ impl Builder<'_> {
 }
 
 /// Places along curves over 0 to 1 where they are compared; a prime, so that equal bends are not met at equal places.
-fn places() -> impl Iterator<Item = f64> {
+pub(super) fn places() -> impl Iterator<Item = f64> {
     const COUNT: u32 = 97;
     (0..COUNT).map(|k| (f64::from(k) + 0.5) / f64::from(COUNT))
 }

@@ -99,6 +99,7 @@ impl Builder<'_> {
             Kind::Extrude(extrude) => self.extrusion(extrude).map(here),
             Kind::Sweep(sweep) => self.sweep(sweep).map(here),
             Kind::Ruled(ruled) => self.ruled(ruled).map(here),
+            Kind::Loft(loft) => self.loft(loft, span).map(here),
             Kind::Translational(moved) => self.translational(moved).map(here),
             Kind::Sheet(sheet) => self.sheet(sheet).map(here),
             Kind::Polygon(polygon) => self.polygon(polygon, span).map(here),

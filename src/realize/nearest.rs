@@ -13,6 +13,8 @@ pub(super) struct Field {
     surface: Box<AnySurface>,
     u: Domain,
     v: Domain,
+    /// Where tangents jump, with both ends of the domain.
+    stops: (Vec<f64>, Vec<f64>),
     /// Whether opposite rims of u, and of v, are one line.
     closed: (bool, bool),
     /// Points along each side, evenly in its parameter, and a box around all of them.
@@ -25,6 +27,20 @@ const RIM_POINTS: usize = 17;
 
 /// Share of a patch's size within which a written vertex lies on a side: some units of single precision.
 const ON_RIM: f64 = 3e-6;
+
+/// A rectangle of parameters on which a surface is smooth.
+struct Piece {
+    u: Domain,
+    v: Domain,
+}
+
+impl Piece {
+    /// The surface as this piece sees it.
+    fn jet(&self, surface: &AnySurface, u: f64, v: f64) -> SurfaceJet {
+        let side = |t: f64, end: f64| if t >= end { Side::Before } else { Side::After };
+        surface.sided((u, side(u, self.u.end)), (v, side(v, self.v.end)))
+    }
+}
 
 /// Corners on both sides of a seam: those after it count from the end of the domain on.
 fn unwrapped(values: [f64; 3], domain: Domain, closed: bool) -> [f64; 3] {
@@ -45,8 +61,15 @@ impl Field {
     pub(super) fn new(surface: &AnySurface) -> Self {
         let (u, v) = (surface.domain_u(), surface.domain_v());
         let rims = [[DVec3::ZERO; RIM_POINTS]; 4];
+        let with_ends = |joints: Vec<f64>, domain: Domain| {
+            let mut stops = vec![domain.start];
+            stops.extend(joints);
+            stops.push(domain.end);
+            stops
+        };
+        let stops = (with_ends(surface.joints_u(), u), with_ends(surface.joints_v(), v));
         let surface = Box::new(surface.clone());
-        let mut field = Self { surface, u, v, closed: (false, false), rims, reach: Bounds::EMPTY };
+        let mut field = Self { surface, u, v, stops, closed: (false, false), rims, reach: Bounds::EMPTY };
         field.closed = field.find_closed();
         field.rims = Rim::ALL
             .map(|rim| std::array::from_fn(|k| field.rim_point(rim, k as f64 / (RIM_POINTS - 1) as f64)));
@@ -120,19 +143,29 @@ impl Field {
             (corners_u[2], corners_v[2]),
         ];
         let mut best = f64::INFINITY;
+        // A triangle lies in one smooth piece, and its corners on the borders of that one.
+        let own = self.piece(wrap(starts[0].0, self.u), wrap(starts[0].1, self.v));
         for (u, v) in starts {
             let (u, v) = (wrap(u, self.u), wrap(v, self.v));
-            best = best.min(self.descend(point, u, v));
+            best = best.min(self.descend(point, (u, v), &own));
             for (u, v) in self.across_seams(u, v) {
-                best = best.min(self.descend(point, u, v));
+                best = best.min(self.descend(point, (u, v), &self.piece(u, v)));
             }
         }
         best
     }
 
     fn jet(&self, u: f64, v: f64) -> SurfaceJet {
-        let side = |t: f64, end: f64| if t >= end { Side::Before } else { Side::After };
-        self.surface.sided((u, side(u, self.u.end)), (v, side(v, self.v.end)))
+        (Piece { u: self.u, v: self.v }).jet(&self.surface, u, v)
+    }
+
+    /// The smooth piece around a place.
+    fn piece(&self, u: f64, v: f64) -> Piece {
+        let around = |stops: &[f64], value: f64| {
+            let next = stops.partition_point(|stop| *stop <= value).clamp(1, stops.len() - 1);
+            Domain { start: stops[next - 1], end: stops[next] }
+        };
+        Piece { u: around(&self.stops.0, u), v: around(&self.stops.1, v) }
     }
 
     fn find_closed(&self) -> (bool, bool) {
@@ -176,12 +209,13 @@ impl Field {
         starts
     }
 
-    /// Gauss and Newton's method, inside the domain: on a rim the other parameter goes its own way.
-    fn descend(&self, point: DVec3, mut u: f64, mut v: f64) -> f64 {
+    /// Gauss and Newton's method, inside a piece: on a rim the other parameter goes its own way.
+    fn descend(&self, point: DVec3, (u, v): (f64, f64), piece: &Piece) -> f64 {
         let mut best = f64::INFINITY;
         let clamp = |value: f64, domain: Domain| value.clamp(domain.start, domain.end);
+        let (mut u, mut v) = (clamp(u, piece.u), clamp(v, piece.v));
         for _ in 0..12 {
-            let jet = self.jet(u, v);
+            let jet = piece.jet(&self.surface, u, v);
             let away = point - jet.point;
             let found = away.length();
             if found >= best * (1.0 - 1e-9) {
@@ -194,17 +228,17 @@ impl Field {
             if determinant <= 1e-18 * a * c {
                 // At a pole only one parameter moves the point.
                 if a >= c && a > 0.0 {
-                    u = clamp(u + x / a, self.u);
+                    u = clamp(u + x / a, piece.u);
                 } else if c > 0.0 {
-                    v = clamp(v + y / c, self.v);
+                    v = clamp(v + y / c, piece.v);
                 }
                 continue;
             }
             let next = (u + (x * c - y * b) / determinant, v + (y * a - x * b) / determinant);
-            let inside = (clamp(next.0, self.u), clamp(next.1, self.v));
+            let inside = (clamp(next.0, piece.u), clamp(next.1, piece.v));
             (u, v) = match (inside.0 == next.0, inside.1 == next.1) {
-                (true, false) => (clamp(u + (x - b * (inside.1 - v)) / a, self.u), inside.1),
-                (false, true) => (inside.0, clamp(v + (y - b * (inside.0 - u)) / c, self.v)),
+                (true, false) => (clamp(u + (x - b * (inside.1 - v)) / a, piece.u), inside.1),
+                (false, true) => (inside.0, clamp(v + (y - b * (inside.0 - u)) / c, piece.v)),
                 _ => inside,
             };
         }

@@ -1,7 +1,9 @@
 //! Laws of curves.
 
 use glam::{DAffine3, DMat3, DVec3};
-use kiln::geometry::curve::{AnyCurve, Curve, Jet, Reversed, Side, Transformed, length, lengths_at};
+use kiln::geometry::curve::{
+    AnyCurve, Curve, Jet, Restarted, Retimed, Reversed, Side, Transformed, length, lengths_at,
+};
 use kiln::geometry::number::atan2;
 
 use super::{Dice, curves};
@@ -27,7 +29,8 @@ impl Subject {
         Self { name, curve, pieces, size }
     }
 
-    /// Every curve of the list, and each of them backwards and under a map that stretches and shears.
+    /// Every curve of the list, and each of them backwards, under a map that stretches and shears, at an even speed, and
+    /// begun elsewhere if it is closed.
     fn all() -> Vec<Self> {
         let mut all = Vec::new();
         for (name, curve) in curves() {
@@ -38,6 +41,13 @@ impl Subject {
             ));
             let mapped = Transformed::new(curve.clone(), map);
             all.push(Self::new(format!("{name} mapped"), AnyCurve::Transformed(mapped)));
+            let domain = curve.domain();
+            let ends = [(-1.0, domain.start), (2.0, domain.end)];
+            let even = Retimed::by_length(curve.clone(), &ends).expect("the ends are those of the domain");
+            all.push(Self::new(format!("{name} at an even speed"), AnyCurve::Retimed(even)));
+            if let Some(other) = Restarted::new(curve.clone(), domain.at(0.37)) {
+                all.push(Self::new(format!("{name} begun elsewhere"), AnyCurve::Restarted(other)));
+            }
             all.push(Self::new(name, curve));
         }
         assert!(all.len() > 60, "{}", all.len());

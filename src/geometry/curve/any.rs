@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{
     BezierSpline, Curve, Domain, EllipseArc, FormulaCurve, FourPointCurve, Helix, HyperbolaArc, Jet, Path,
-    Polyline, RationalSpline, Retimed, Reversed, Side, Transformed,
+    Polyline, RationalSpline, Restarted, Retimed, Reversed, Side, Transformed,
 };
 use crate::geometry::number::Bounds;
 
@@ -33,6 +33,8 @@ pub enum AnyCurve {
     Transformed(Transformed),
     /// A curve backwards.
     Reversed(Reversed),
+    /// A closed curve begun elsewhere.
+    Restarted(Restarted),
     /// A curve run through at other times.
     Retimed(Retimed),
 }
@@ -51,6 +53,7 @@ macro_rules! each_kind {
             AnyCurve::Path($curve) => $body,
             AnyCurve::Transformed($curve) => $body,
             AnyCurve::Reversed($curve) => $body,
+            AnyCurve::Restarted($curve) => $body,
             AnyCurve::Retimed($curve) => $body,
         }
     };

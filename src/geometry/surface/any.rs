@@ -2,7 +2,7 @@
 
 use super::coons::{ThreeSidedSurface, TransfiniteSurface};
 use super::tensor::{PolynomialSurface, RationalSurface};
-use super::{RuledSurface, SecondJet, SecondRange, Surface, SurfaceJet, TranslationalSurface};
+use super::{LoftedSurface, RuledSurface, SecondJet, SecondRange, Surface, SurfaceJet, TranslationalSurface};
 use crate::geometry::curve::{Domain, Side};
 
 /// A surface of any kind.
@@ -10,6 +10,8 @@ use crate::geometry::curve::{Domain, Side};
 pub enum AnySurface {
     /// Straight lines between two curves.
     Ruled(Box<RuledSurface>),
+    /// Through a row of curves.
+    Lofted(Box<LoftedSurface>),
     /// One curve moved along another.
     Translational(Box<TranslationalSurface>),
     /// Polynomial patches by control points.
@@ -26,6 +28,7 @@ macro_rules! each_kind {
     ($self:ident, $surface:ident => $body:expr) => {
         match $self {
             AnySurface::Ruled($surface) => $body,
+            AnySurface::Lofted($surface) => $body,
             AnySurface::Translational($surface) => $body,
             AnySurface::Polynomial($surface) => $body,
             AnySurface::Rational($surface) => $body,

@@ -10,6 +10,8 @@ mod extruded;
 mod frame;
 mod joint;
 mod limit;
+mod lofted;
+mod matching;
 mod measure;
 mod revolved;
 mod rim;
@@ -23,10 +25,12 @@ pub use any::AnySurface;
 pub use extruded::ExtrudedSurface;
 pub use frame::{Carry, Frame, FrameField, FrameRule};
 pub use joint::{PatchContinuity, Smoothness, SurfaceJoint, SurfaceJoints, SurfaceLine, joints};
+pub use lofted::{Across, CrossEnd, LoftedSurface};
+pub use matching::{MatchError, Matching, matched};
 pub use measure::{SurfaceMeasures, measure};
 pub use revolved::RevolvedSurface;
 pub use rim::Rim;
-pub use ruled::RuledSurface;
+pub use ruled::{RuledSurface, gathered};
 pub use second::{SecondJet, SecondRange};
 pub use swept::{
     Carrier, Change, Law, Matched, Mix, Outline, Plane, Screw, Section, SectionPoint, Slope, Spot, Stand,

@@ -54,14 +54,15 @@ impl RuledSurface {
     }
 }
 
-/// A curve that stays at one point, with the parameters and joints of another.
-fn gathered(curve: &AnyCurve, point: DVec3) -> AnyCurve {
+/// A curve that stays at one point, with the parameters and joints of another: the tip of a cone.
+#[must_use]
+pub fn gathered(curve: &AnyCurve, point: DVec3) -> AnyCurve {
     let map = DAffine3 { matrix3: DMat3::ZERO, translation: point };
     AnyCurve::Transformed(Transformed::new(curve.clone(), map))
 }
 
 /// Moves joints that miss one of `others` by rounding alone onto it.
-fn with_joints_of(curve: AnyCurve, others: &[f64]) -> AnyCurve {
+pub(super) fn with_joints_of(curve: AnyCurve, others: &[f64]) -> AnyCurve {
     let joints = jumps(&curve);
     let near = |joint: f64| others.iter().copied().find(|other| (other - joint).abs() <= SAME_JOINT);
     if joints.iter().all(|joint| near(*joint).is_none_or(|other| other == *joint)) {
@@ -70,7 +71,7 @@ fn with_joints_of(curve: AnyCurve, others: &[f64]) -> AnyCurve {
     let mut stops = vec![(0.0, 0.0)];
     stops.extend(joints.iter().filter_map(|joint| near(*joint).map(|other| (other, *joint))));
     stops.push((1.0, 1.0));
-    Retimed::new(curve.clone(), stops).map_or(curve, AnyCurve::Retimed)
+    Retimed::new(curve.clone(), &stops).map_or(curve, AnyCurve::Retimed)
 }
 
 impl Surface for RuledSurface {

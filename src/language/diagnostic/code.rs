@@ -204,6 +204,8 @@ codes! {
     Coincident = "K0821";
     /// an end cannot be closed by a flat face
     NoFlatEnd = "K0822";
+    /// a profile does not lie in one plane
+    NoPlane = "K0826";
     /// a measure of a shape does not fit its other measures
     DoesNotFit = "K0830";
     /// a face crosses itself

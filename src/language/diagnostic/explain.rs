@@ -221,6 +221,9 @@ examples! {
     NoFlatEnd: "Solids between closed curves end in flat faces, so these curves must be flat and enclose an area. Leave the faces out with `caps = false`, or close the end with a shape of its own.",
         "[shape.a.ruled]\nfrom = { polyline = { points = [[0, 0], [1, 0, 1], [1, 1], [0, 1, 1]], closed = true } }\nto = [0, 0, 4]" =>
         "[shape.a.ruled]\nfrom = { polyline = { points = [[0, 0], [1, 0, 1], [1, 1], [0, 1, 1]], closed = true } }\nto = [0, 0, 4]\ncaps = false";
+    NoPlane: "A loft leaves a profile at right angles to its plane, and a round tip spreads in the plane of its neighbor. A straight line, or a curve that leaves its plane, has none.",
+        "[shape.a.loft]\nprofiles = [{ line = { from = [0, 0], to = [1, 0] } }, { line = { from = [0, 0, 1], to = [1, 0, 1] } }]\nstart = \"straight\"" =>
+        "[shape.a.loft]\nprofiles = [{ line = { from = [0, 0], to = [1, 0] } }, { line = { from = [0, 0, 1], to = [1, 0, 1] } }]\nstart = { first = [0, 0, 1] }";
     UnmetSeam: "Around a closed path the section comes back to where it began. There it must be what it was: of the same size, the same profile, and turned so that it lies on itself - by whole turns, or by a part of a turn that the profile's own symmetry allows.",
         "[shape.a.sweep]\nprofile = { ellipse = { radii = [0.2, 0.1] } }\npath = { circle = { radius = 1 } }\ntwist = 90" =>
         "[shape.a.sweep]\nprofile = { ellipse = { radii = [0.2, 0.1] } }\npath = { circle = { radius = 1 } }\ntwist = 180";

@@ -9,6 +9,7 @@ use crate::language::spec::construct::{choices, kinds, table};
 use crate::language::spec::coons::{Coons, Gordon};
 use crate::language::spec::import::Import;
 use crate::language::spec::kind::{Kinds, take_kind};
+use crate::language::spec::loft::Loft;
 use crate::language::spec::mesh::Mesh;
 use crate::language::spec::nurbs_surface::{BSplineSurface, NurbsSurface};
 use crate::language::spec::patch::{HermiteSurface, Patches};
@@ -120,6 +121,8 @@ kinds! {
         Sweep(Sweep) = "sweep";
         /// Straight lines between two curves.
         Ruled(Ruled) = "ruled";
+        /// A surface through a row of profiles.
+        Loft(Loft) = "loft";
         /// A curve moved along another.
         Translational(Translational) = "translational";
         /// The flat face inside a closed curve.

@@ -168,7 +168,10 @@ impl<'a> Net<'a> {
                 let (chord, evidence) = judge_chord(place, pair, [points[i], points[j]], tolerance);
                 judged.bound = judged.bound.max(chord);
                 judged.evidence = judged.evidence.max(evidence);
-                judged.sides[side] = judged.sides[side].max(chord);
+                // A line that is good enough does not say where a triangle that is folded is to be split.
+                if chord > tolerance {
+                    judged.sides[side] = judged.sides[side].max(chord);
+                }
             }
         }
         judged
