@@ -30,6 +30,7 @@ mod shape;
 mod spline;
 mod svg;
 mod sweep;
+mod turned;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use indexmap::IndexMap;

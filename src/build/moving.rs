@@ -44,9 +44,12 @@ pub(super) fn moving_extrusion(
 }
 
 impl Builder<'_> {
-    /// A profile that rises while it turns.
-    pub(super) fn screw(&mut self, revolve: &spec::Revolve) -> Option<Recipe> {
-        let profile = self.axial_profile(&revolve.profile)?;
+    /// A profile that rises while it turns from an angle on.
+    pub(super) fn screw(
+        &mut self,
+        revolve: &spec::Revolve,
+        (profile, start): (Profile, f64),
+    ) -> Option<Recipe> {
         self.check_off_axis(&profile)?;
         self.check_turns(revolve, &profile);
         let curve = if profile.curve.is_closed() || faces_outward(&profile) {
@@ -54,8 +57,7 @@ impl Builder<'_> {
         } else {
             AnyCurve::Reversed(Reversed::new(profile.curve))
         };
-        let screw =
-            Screw { start: revolve.start.value, angle: revolve.angle.value, rise: revolve.rise.value };
+        let screw = Screw { start, angle: revolve.angle.value, rise: revolve.rise.value };
         Some(Recipe::Sweep(Sweep {
             outlines: vec![vec![curve]],
             islands: vec![1],

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::Builder;
 use super::profile::show;
 use crate::geometry::curve::{AnyCurve, Curve as _, Side};
-use crate::geometry::number::{Bounds, floor_count, floor_large};
+use crate::geometry::number::{Bounds, floor_count};
 use crate::geometry::planar::encloses;
 use crate::geometry::surface::{Stand, SweptSurface};
 use crate::geometry::tessellate::{Route, Sweep};
@@ -215,27 +215,27 @@ impl Walk {
         if self.closed { between.min(self.length - between) } else { between }
     }
 
-    /// Stops whose sections may touch though they are not neighbors on the way.
+    /// Stops whose sections may touch though they are not neighbors on the way. Compared are those that lie near each
+    /// other along the longest side of the path's box.
     fn near_pairs(&self, reach: f64) -> Vec<(usize, usize)> {
         let size = 2.0 * reach;
-        let low = Bounds::of_points(self.stops.iter().map(|stop| stop.point)).min;
-        let cell = |point: DVec3| ((point - low) / size + 1.0).to_array().map(floor_large);
-        let mut cells: BTreeMap<[u64; 3], Vec<usize>> = BTreeMap::new();
+        let bounds = Bounds::of_points(self.stops.iter().map(|stop| stop.point));
+        let extent = (bounds.max - bounds.min).to_array();
+        let axis = (0..3).max_by(|a: &usize, b: &usize| extent[*a].total_cmp(&extent[*b])).unwrap_or(0);
+        let free = self.stops.iter().enumerate().filter(|(_, stop)| !stop.mitred);
+        let mut order: Vec<(f64, usize)> = free.map(|(index, stop)| (stop.point[axis], index)).collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut pairs = Vec::new();
-        for (index, stop) in self.stops.iter().enumerate().filter(|(_, stop)| !stop.mitred) {
-            let [x, y, z] = cell(stop.point);
-            for around in 0..27 {
-                let beside = |cell: u64, step: u64| cell.saturating_add(step).saturating_sub(1);
-                let near = [beside(x, around % 3), beside(y, around / 3 % 3), beside(z, around / 9)];
-                let known = cells.get(&near).into_iter().flatten().copied();
-                // On a bend that does not fold, sections nearer than half a turn do not reach each other.
-                pairs.extend(known.map(|other| (other, index)).filter(|(other, _)| {
-                    let other = &self.stops[*other];
-                    stop.point.distance(other.point) < size
-                        && self.apart(stop.walked, other.walked) > std::f64::consts::PI * reach
-                }));
-            }
-            cells.entry([x, y, z]).or_default().push(index);
+        for (rank, (place, index)) in order.iter().enumerate() {
+            let stop = &self.stops[*index];
+            let beside = order[rank + 1..].iter().take_while(|(other, _)| other - place < size);
+            // On a bend that does not fold, sections nearer than half a turn do not reach each other.
+            let far = beside.map(|(_, other)| *other).filter(|other| {
+                let other = &self.stops[*other];
+                self.apart(stop.walked, other.walked) > std::f64::consts::PI * reach
+                    && stop.point.distance_squared(other.point) < size * size
+            });
+            pairs.extend(far.map(|other| (other.min(*index), other.max(*index))));
         }
         pairs.sort_unstable();
         pairs

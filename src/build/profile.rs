@@ -149,7 +149,7 @@ impl Builder<'_> {
         None
     }
 
-    fn refuse<T>(&mut self, code: Code, message: &str, span: Span, label: &str) -> Option<T> {
+    pub(super) fn refuse<T>(&mut self, code: Code, message: &str, span: Span, label: &str) -> Option<T> {
         self.report(Diagnostic::error(code, message).at(span, label));
         None
     }

@@ -5,7 +5,6 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::primitive::primitive;
 use super::{Builder, placement};
 use crate::geometry::mesh;
-use crate::geometry::tessellate::Revolution;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, Count, Shape as Kind, ShapeDefinition, ShapeReference};
@@ -36,10 +35,10 @@ impl Builder<'_> {
 
     fn shape(&mut self, name: &str, definition: &ShapeDefinition, span: Span) -> Option<ShapeHandle> {
         let options = self.options(&definition.options);
-        let (recipe, center) = self.recipe(name, &definition.kind, span)?;
+        let (recipe, place) = self.recipe(name, &definition.kind, span)?;
         let faces = std::mem::take(&mut self.face_places);
         let mut options = options?;
-        options.placement *= DAffine3::from_translation(center);
+        options.placement *= place;
         self.model.shapes.push(Shape { name: name.to_owned(), recipe, options });
         self.places.push(span);
         self.faces.push(faces);
@@ -71,9 +70,9 @@ impl Builder<'_> {
         })
     }
 
-    /// The recipe of a kind and where its origin is moved.
-    fn recipe(&mut self, name: &str, kind: &Kind, span: Span) -> Option<(Recipe, DVec3)> {
-        let here = |recipe: Recipe| (recipe, DVec3::ZERO);
+    /// The recipe of a kind and where it is put.
+    fn recipe(&mut self, name: &str, kind: &Kind, span: Span) -> Option<(Recipe, DAffine3)> {
+        let here = |recipe: Recipe| (recipe, DAffine3::IDENTITY);
         match kind {
             Kind::Box(_)
             | Kind::Sphere(_)
@@ -85,17 +84,10 @@ impl Builder<'_> {
             | Kind::Disk(_)
             | Kind::Plane(_)
             | Kind::Polyhedron(_)
-            | Kind::Geodesic(_) => primitive(kind),
-            Kind::Revolve(revolve) if revolve.rise.value != 0.0 => self.screw(revolve).map(here),
-            Kind::Revolve(revolve) => {
-                let profile = self.axial_profile(&revolve.profile)?;
-                Some(here(Recipe::Revolution(Revolution {
-                    profile: profile.curve,
-                    start: revolve.start.value,
-                    angle: revolve.angle.value,
-                    caps: revolve.caps.value,
-                })))
+            | Kind::Geodesic(_) => {
+                primitive(kind).map(|(recipe, center)| (recipe, DAffine3::from_translation(center)))
             }
+            Kind::Revolve(revolve) => self.revolution(revolve),
             Kind::Extrude(extrude) => self.extrusion(extrude).map(here),
             Kind::Sweep(sweep) => self.sweep(sweep).map(here),
             Kind::Ruled(ruled) => self.ruled(ruled).map(here),

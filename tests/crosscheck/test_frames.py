@@ -147,6 +147,40 @@ def test_reference_sweeps(kiln: Kiln, cases: Path) -> None:
         assert shape["area"] == pytest.approx(case["lateral_area"] + ends, rel=5e-3), case["name"]
 
 
+@pytest.mark.cases
+def test_reference_twisted_square(kiln: Kiln, cases: Path) -> None:
+    (case,) = [case for case in reference(cases, "sweep") if "twist" in case]
+    side, (start, end) = case["section"]["square"], case["path"]["line"]
+    half = side / 2
+    corners = [[-half, -half], [half, -half], [half, half], [-half, half]]
+    square = f"{{ polyline = {{ points = {corners}, closed = true }} }}"
+    turn = f"twist = {np.degrees(case['twist'])}\n"
+    path = f"path = {{ line = {{ from = {start}, to = {end} }} }}\n"
+    height = f"height = {np.linalg.norm(np.subtract(end, start))}\n"
+    for kind, way in (("sweep", path), ("extrude", height)):
+        shape = kiln.bake(f"tolerance = 0.0005\n[shape.s.{kind}]\nprofile = {square}\n{way}{turn}").shape("s")
+        assert shape["closed"]
+        assert shape["volume"] == pytest.approx(case["volume"], rel=1e-3), kind
+        assert shape["area"] == pytest.approx(case["lateral_area"] + 2 * side**2, rel=1e-3), kind
+
+
+@pytest.mark.cases
+def test_reference_wine_glass(kiln: Kiln, cases: Path) -> None:
+    """Its spline dips below the axis, which a turned profile must not; the spline itself gives the area and volume."""
+    (case,) = [case for case in reference(cases, "revolution") if case["name"] == "wine_glass"]
+    kiln.write(f'{outline(case["profile"])}[shape.s.revolve]\nprofile = "c"\n')
+    refused = kiln.run("bake", "model.toml", "--out", "out")
+    assert refused.returncode != 0
+    assert "K0801" in refused.stderr
+    samples = kiln.sample("--curve", "c", "--count", "2048")["samples"]
+    points = np.array([sample["point"] for sample in samples])
+    radius, height = points[:, 0], points[:, 1]
+    steps = np.hypot(np.diff(radius), np.diff(height))
+    middle = (radius[1:] + radius[:-1]) / 2
+    assert 2 * np.pi * np.sum(np.abs(middle) * steps) == pytest.approx(case["lateral_area"], rel=1e-5)
+    assert np.pi * np.sum(middle**2 * np.diff(height)) == pytest.approx(case["volume_swept_to_axis"], rel=1e-5)
+
+
 def path_of(path: dict[str, Any]) -> str:
     """A reference path as a curve of the language."""
     if "line" in path:

@@ -80,7 +80,7 @@ pub use primitive::{
     Base, BoxShape, Capsule, Cone, Cylinder, Disk, Geodesic, GeodesicClass, PlaneShape, Polyhedron, Pose,
     Solid, Sphere, Torus, Tube,
 };
-pub use profile::{Extrude, Fill, Revolve};
+pub use profile::{Axis, Extrude, Fill, Revolve};
 pub use reference::{CurveReference, Family, MaterialName, NodeName, ShapeName, ShapeReference};
 pub use ruled::{End, Ruled, Translational};
 pub use scaling::{Blend, Factor, ScaleStation, Scaling};

@@ -68,6 +68,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 5] = [
             "polyhedron",
             "geodesic",
             "revolve",
+            "axis",
             "extrude",
             "sweep",
             "profile station",

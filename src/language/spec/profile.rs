@@ -1,20 +1,31 @@
 //! Shapes made from profiles: revolve, extrude.
 
+use glam::DVec2;
+use serde_json::Value as Json;
+
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::check::Check;
 use crate::language::spec::construct::{choices, table};
-use crate::language::spec::reader::Reader;
+use crate::language::spec::kind::choice;
+use crate::language::spec::reader::{Read, Reader};
 use crate::language::spec::reference::CurveReference;
 use crate::language::spec::scaling::{Factor, keeps_width};
+use crate::language::spec::schema::{Schemas, any_of, one_of_words};
 use crate::language::spec::spanned::Sp;
-use crate::language::value::show_number;
+use crate::language::value::{Data, Value, show_number};
 
 table! {
-    /// A profile turned about the y axis: x of the profile is the radius, y goes along the axis.
+    /// A profile turned about the y axis, or another line of its plane: x of the profile is the radius, y goes along the
+    /// axis.
     "revolve" pub Revolve {
-        /// The profile: the name of a curve, or a curve in place. Its x must not be negative.
+        /// The profile: the name of a curve, or a curve in place. It lies on one side of the axis: about the y axis its x
+        /// must not be negative.
         profile: CurveReference;
+        /// The axis, where it is not the y axis: `"x"`, `"y"`, or a line in the plane of the profile,
+        /// `{ point = [0.1, 0], direction = [0, 1] }`. The profile may lie to either side, and turns as a right-handed
+        /// screw does that moves in the direction of the axis.
+        axis: Option<Axis>;
         /// How far it is turned, in degrees; more than 360 needs a `rise`.
         angle: Sp<f64> = 360.0 => Check::above(0.0).up_to(360_000.0);
         /// Where the turn starts, in degrees from +x.
@@ -27,6 +38,54 @@ table! {
         rise: Sp<f64> = 0.0;
     }
     checked check
+}
+
+/// A line in the plane of a profile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axis {
+    /// A point on it.
+    pub point: DVec2,
+    /// Its direction; not zero, of any length.
+    pub direction: DVec2,
+}
+
+table! {
+    /// An axis in the plane of a profile.
+    "axis" pub(crate) AxisFields {
+        /// Where it goes; any length but 0.
+        direction: Sp<DVec2>;
+        /// A point on it.
+        point: Sp<DVec2> = DVec2::ZERO;
+    }
+    checked check
+}
+
+impl AxisFields {
+    fn check(&self, _: Span, reader: &mut Reader<'_>) -> bool {
+        if self.direction.value != DVec2::ZERO {
+            return true;
+        }
+        let report = Diagnostic::error(Code::OutOfRange, "`direction` must not be [0, 0]");
+        reader.report(report.at(self.direction.span, "no direction"));
+        false
+    }
+}
+
+impl Read for Axis {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        if matches!(value.data, Data::Table(_)) {
+            let fields = AxisFields::read(value, reader)?;
+            return Some(Self { point: fields.point.value, direction: fields.direction.value });
+        }
+        let direction = if choice(value, &["x", "y"], reader)? == "x" { DVec2::X } else { DVec2::Y };
+        Some(Self { point: DVec2::ZERO, direction })
+    }
+
+    fn schema(schemas: &mut Schemas) -> Json {
+        let mut alternatives = one_of_words(&["x", "y"]);
+        alternatives.push(AxisFields::schema(schemas));
+        any_of(alternatives)
+    }
 }
 
 impl Revolve {
