@@ -16,6 +16,7 @@
 //! | `geometry::mesh` | `geometry::number`, `geometry::planar` |
 //! | `geometry::surface` | `geometry::number`, `geometry::curve` |
 //! | `geometry::tessellate` | `geometry::number`, `geometry::planar`, `geometry::curve`, `geometry::mesh`, `geometry::surface` |
+//! | `geometry::profile` | `geometry::number`, `geometry::planar`, `geometry::curve`, `geometry::tessellate` |
 //! | `import` | `geometry::number`, `geometry::mesh` |
 //! | `model` | `geometry` |
 //! | `scene` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `model` |

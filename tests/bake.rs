@@ -12,6 +12,7 @@ mod hostile;
 mod lofts;
 mod mutation;
 mod nets;
+mod operations;
 mod patches;
 mod paths;
 mod polygons;

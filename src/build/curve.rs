@@ -55,9 +55,19 @@ impl Builder<'_> {
             Curve::Nurbs(spline) => self.nurbs(spline, span),
             Curve::Path(path) => self.path(path),
             // Their parts are made where parts are asked for.
-            Curve::Svg(_) | Curve::Group(_) | Curve::Part(_) | Curve::Reverse(_) | Curve::Transform(_) => {
-                None
-            }
+            Curve::Svg(_)
+            | Curve::Group(_)
+            | Curve::Part(_)
+            | Curve::Implicit(_)
+            | Curve::Offset(_)
+            | Curve::Union(_)
+            | Curve::Difference(_)
+            | Curve::Intersection(_)
+            | Curve::Xor(_)
+            | Curve::Fillet(_)
+            | Curve::Chamfer(_)
+            | Curve::Reverse(_)
+            | Curve::Transform(_) => None,
         }
     }
 

@@ -81,7 +81,12 @@ impl Builder<'_> {
     }
 
     /// All parts of a curve, each as a closed profile: named `one` where there is one, else `many` and a number.
-    fn closed_parts(&mut self, reference: &CurveReference, one: &str, many: &str) -> Option<Vec<Profile>> {
+    pub(super) fn closed_parts(
+        &mut self,
+        reference: &CurveReference,
+        one: &str,
+        many: &str,
+    ) -> Option<Vec<Profile>> {
         let parts = self.parts_of(reference)?;
         let count = parts.len();
         let profiles: Vec<_> = (parts.into_iter().enumerate())
@@ -95,17 +100,22 @@ impl Builder<'_> {
 
     /// Parts that lie apart or inside each other, sorted by what they enclose.
     fn sort(&mut self, parts: &[Profile], fill: Fill, span: Span) -> Option<Vec<Island>> {
+        self.apart(parts, span)?;
+        let places: Vec<Vec<DVec2>> = parts.iter().map(Profile::places).collect();
+        Some(islands(&places, fill))
+    }
+
+    /// Parts must not meet.
+    pub(super) fn apart(&mut self, parts: &[Profile], span: Span) -> Option<()> {
         let all: Vec<&Profile> = parts.iter().collect();
         let places: Vec<Vec<DVec2>> = parts.iter().map(Profile::places).collect();
-        if let Some(Contact { first, second, point }) = meeting(&all, &places) {
-            let message = format!("parts {first} and {second} of the outline meet near {}", place(point));
-            let report = Diagnostic::error(Code::PartsMeet, message)
-                .at(span, "parts lie apart or inside each other")
-                .help("move them apart, or draw what they enclose together as one outline");
-            self.report(report);
-            return None;
-        }
-        Some(islands(&places, fill))
+        let Some(Contact { first, second, point }) = meeting(&all, &places) else { return Some(()) };
+        let message = format!("parts {first} and {second} of the outline meet near {}", place(point));
+        let report = Diagnostic::error(Code::PartsMeet, message)
+            .at(span, "parts lie apart or inside each other")
+            .help("join them first: `{ union = { of = [...] } }`");
+        self.report(report);
+        None
     }
 
     /// The written holes of each island.

@@ -2,6 +2,7 @@
 
 use super::{Builder, placement, svg};
 use crate::geometry::curve::{AnyCurve, Reversed, Transformed};
+use crate::geometry::planar::SetOperation;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{Curve, CurveReference, Part};
@@ -69,6 +70,14 @@ impl Builder<'_> {
                 Some(parts?.concat())
             }
             Curve::Part(part) => self.part(part).map(|curve| vec![curve]),
+            Curve::Implicit(implicit) => self.implicit(implicit, span),
+            Curve::Offset(offset) => self.offset(offset, span),
+            Curve::Union(set) => self.profile_set(set, SetOperation::Union, span),
+            Curve::Difference(set) => self.profile_set(set, SetOperation::Difference, span),
+            Curve::Intersection(set) => self.profile_set(set, SetOperation::Intersection, span),
+            Curve::Xor(set) => self.profile_set(set, SetOperation::Xor, span),
+            Curve::Fillet(fillet) => self.fillet(fillet, span),
+            Curve::Chamfer(chamfer) => self.chamfer(chamfer, span),
             Curve::Reverse(reverse) => {
                 let parts = self.parts_of(&reverse.of)?;
                 Some(parts.into_iter().map(|part| AnyCurve::Reversed(Reversed::new(part))).collect())

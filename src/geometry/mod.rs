@@ -8,5 +8,6 @@ pub mod formula;
 pub mod mesh;
 pub mod number;
 pub mod planar;
+pub mod profile;
 pub mod surface;
 pub mod tessellate;

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{
     BezierSpline, Curve, Domain, EllipseArc, FormulaCurve, FourPointCurve, Helix, HyperbolaArc, Jet, Path,
-    Polyline, RationalSpline, Restarted, Retimed, Reversed, Side, Transformed,
+    Polyline, RationalSpline, Restarted, Retimed, Reversed, Side, Transformed, Trimmed,
 };
 use crate::geometry::number::Bounds;
 
@@ -37,6 +37,8 @@ pub enum AnyCurve {
     Restarted(Restarted),
     /// A curve run through at other times.
     Retimed(Retimed),
+    /// A part of a curve.
+    Trimmed(Trimmed),
 }
 
 macro_rules! each_kind {
@@ -55,6 +57,7 @@ macro_rules! each_kind {
             AnyCurve::Reversed($curve) => $body,
             AnyCurve::Restarted($curve) => $body,
             AnyCurve::Retimed($curve) => $body,
+            AnyCurve::Trimmed($curve) => $body,
         }
     };
 }

@@ -17,6 +17,7 @@ mod four_point;
 mod helix;
 mod hermite;
 mod hyperbola;
+mod implicit;
 mod joint;
 mod length;
 mod mapped;
@@ -32,6 +33,7 @@ mod spline;
 mod spline_ends;
 mod study;
 mod subdivision;
+mod trimmed;
 mod windows;
 
 pub use any::AnyCurve;
@@ -44,6 +46,7 @@ pub use hermite::{
     Bartels, EndRule, HermiteKnot, alpha_parameters, hermite, rational_hermite, through, through_closed,
 };
 pub use hyperbola::HyperbolaArc;
+pub use implicit::{ImplicitFault, implicit};
 pub use joint::{Continuity, Meeting};
 pub use length::{length, length_between, length_of_step, lengths_at};
 pub use mapped::{Reversed, Transformed};
@@ -57,6 +60,7 @@ pub use spline::{Parametrization, SplineError, interpolate, interpolate_closed, 
 pub use spline_ends::{SplineEnd, interpolate_with};
 pub use study::FormulaFault;
 pub use subdivision::{Border, Scheme, chaikin_limit, fewest, refine, three_point_limit};
+pub use trimmed::Trimmed;
 pub use windows::{beta_spline, windows};
 
 use glam::DVec3;

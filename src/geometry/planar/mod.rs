@@ -1,14 +1,16 @@
 //! Points and segments in the plane: on which side, whether they cross, what encloses what.
 //!
-//! Promise: every answer of yes or no is exact, by the orientation predicate of J. Shewchuk, Adaptive precision
+//! Promise: every answer of yes or no is exact (but for set operations, which first round to a fine grid), by the orientation predicate of J. Shewchuk, Adaptive precision
 //! floating-point arithmetic and fast robust geometric predicates, 1997; places that are told with it are rounded.
 //! This is the one owner of such questions: meshes and tessellations ask here.
 
 mod contact;
+mod overlay;
 mod region;
 mod sweep;
 
 pub use contact::{Contact, Crossing, crossing, crossing_segments, first_contact, first_crossing};
+pub use overlay::{SetOperation, Winding, overlay};
 pub use region::{Regions, regions};
 
 use glam::DVec2;

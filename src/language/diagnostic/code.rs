@@ -155,6 +155,10 @@ codes! {
     ManyParts = "K0621";
     /// a curve has no part of that number
     NoPart = "K0622";
+    /// a formula is nowhere zero
+    NoZero = "K0623";
+    /// the zeros of a formula are no smooth curve
+    SingularCurve = "K0624";
 
     /// a face names a point that does not exist
     FaceIndex = "K0701";
@@ -219,6 +223,14 @@ codes! {
 
     /// parts of a profile cross or touch each other
     PartsMeet = "K0840";
+    /// nothing is left of a profile
+    NothingLeft = "K0841";
+    /// two outlines touch, and it is unclear whether they cross
+    UnclearContact = "K0842";
+    /// a corner has no room for what is asked
+    NoRoom = "K0843";
+    /// a curve has no such corner
+    NoCorner = "K0844";
 
     /// a file cannot be imported
     ImportFailed = "K0851";

@@ -168,12 +168,18 @@ examples! {
         "[curve.a.formula]\ny = \"= abs(sin(10 * x))\"\nfrom = 0\nto = 360\n[shape.s.sphere]\nradius = 1";
     SvgSyntax: "The data of an SVG path is read to the end of its grammar, as a browser reads it, but a browser draws what stands before a fault and says nothing. The message names the character.",
         "[curve.a.svg]\nd = \"M 0 0 L 10\"" => "[curve.a.svg]\nd = \"M 0 0 L 10 5\"";
-    ManyParts: "SVG paths and groups are curves of several parts. Extrude, sheet and wire take all of them; where one curve is needed, such as a path or a section, take one with `part`.",
+    ManyParts: "SVG paths, groups and operations on profiles are curves of several parts. Extrude, sheet, wire and the operations take all of them; where one curve is needed, such as a path or a section, take one with `part`.",
         "[curve.a.svg]\nd = \"M0 0H1 M0 1H1\"\n[shape.s.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = \"a\"" =>
         "[curve.a.svg]\nd = \"M0 0H1 M0 1H1\"\n[shape.s.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = { part = { of = \"a\", index = 0 } }";
     NoPart: "Parts are counted from 0. `kiln sample --curve NAME` shows all of them.",
         "[curve.a.part]\nof = { circle = { radius = 1 } }\nindex = 1" =>
         "[curve.a.part]\nof = { circle = { radius = 1 } }\nindex = 0\n[shape.s.sphere]\nradius = 1";
+    NoZero: "An implicit curve is where its formula is 0, inside of its box. This one is everywhere more or everywhere less.",
+        "[curve.a.implicit]\nf = \"= x^2 + y^2 - 9\"\nmin = [-1, -1]\nmax = [1, 1]" =>
+        "[curve.a.implicit]\nf = \"= x^2 + y^2 - 9\"\nmin = [-4, -4]\nmax = [4, 4]\n[shape.s.sphere]\nradius = 1";
+    SingularCurve: "Near the places named the zeros of a formula cross, end in a tip, form a lone point or a whole area, or touch the border of the box; or the formula has a kink or no value there. The box must leave such places out.",
+        "[curve.a.implicit]\nf = \"= x * y\"\nmin = [-1, -1]\nmax = [1, 1]" =>
+        "[curve.a.implicit]\nf = \"= x * y - 0.01\"\nmin = [-1, -1]\nmax = [1, 1]\n[shape.s.sphere]\nradius = 1";
     FaceIndex: "A face names a point that is not in the list. Indices count from 0.",
         "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[1, 2, 3]]" =>
         "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[0, 1, 2]]";
@@ -258,9 +264,20 @@ examples! {
     TexturedWire: "A wire is made of lines, which have no surface for a texture. Give it a material with a plain color, or draw a thin profile along its curves with `sweep`.",
         "[material.m]\ncolor-texture = \"label.png\"\n[shape.a]\nmaterial = \"m\"\n[shape.a.wire]\ncurves = [{ circle = { radius = 1 } }]" =>
         "[material.m]\ncolor = \"#b5651d\"\n[shape.a]\nmaterial = \"m\"\n[shape.a.wire]\ncurves = [{ circle = { radius = 1 } }]";
-    PartsMeet: "Parts of a profile lie apart from each other or inside of each other. Where they cross it is not said what they enclose.",
+    PartsMeet: "Parts of a profile lie apart from each other or inside of each other. Where they cross it is not said what they enclose: join them with `union` first.",
         "[shape.a.extrude]\nprofile = { group = { of = [{ circle = { radius = 1 } }, { circle = { radius = 1, center = [1, 0] } }] } }\nheight = 1" =>
         "[shape.a.extrude]\nprofile = { group = { of = [{ circle = { radius = 1 } }, { circle = { radius = 1, center = [3, 0] } }] } }\nheight = 1";
+    NothingLeft: "An operation on profiles may leave nothing: an offset inward by more than half of the width, a difference that takes all away, an intersection of curves that lie apart.",
+        "[shape.a.extrude]\nprofile = { offset = { of = { circle = { radius = 1 } }, distance = -1.5 } }\nheight = 1" =>
+        "[shape.a.extrude]\nprofile = { offset = { of = { circle = { radius = 1 } }, distance = -0.5 } }\nheight = 1";
+    UnclearContact: "Where two outlines touch without crossing, the least rounding decides whether what they enclose hangs together there. Move one of them, so that they cross clearly or stand apart.",
+        "" => "";
+    NoRoom: "A rounded corner takes from both of its sides a length that grows with the radius, and with how sharp the corner is. The sides must be that long, and long enough for their other corners too.",
+        "[shape.a.extrude]\nprofile = { fillet = { of = { polyline = { points = [[0, 0], [4, 0], [4, 2], [0, 2]], closed = true } }, radius = 1.5 } }\nheight = 1" =>
+        "[shape.a.extrude]\nprofile = { fillet = { of = { polyline = { points = [[0, 0], [4, 0], [4, 2], [0, 2]], closed = true } }, radius = 0.5 } }\nheight = 1";
+    NoCorner: "Corners are the places where the direction of a curve jumps. They are counted from 0 along the curve; one that is closed and starts in a corner has its first one there.",
+        "[shape.a.extrude]\nprofile = { fillet = { of = { polyline = { points = [[0, 0], [4, 0], [4, 2]], closed = true } }, radius = 0.2, corners = [3] } }\nheight = 1" =>
+        "[shape.a.extrude]\nprofile = { fillet = { of = { polyline = { points = [[0, 0], [4, 0], [4, 2]], closed = true } }, radius = 0.2, corners = [2] } }\nheight = 1";
     ImportFailed: "A file is damaged or cut off. The message names its line and value. Export it again.",
         "" => "";
     ImportNote: "Something in an imported file was passed over or put right; the notes say what and where.",

@@ -111,13 +111,15 @@ fn plain(text: &str) -> String {
     quoted[1..quoted.len() - 1].to_owned()
 }
 
+/// Names under which formulas stand.
+const TAKES_FORMULAS: [&str; 2] = ["formula", "implicit"];
+
 /// Where a value stands in the document.
 #[derive(Clone, Copy)]
 struct Place {
     /// Names on the way from the top.
     depth: usize,
-    /// Whether an expression here may have variables: directly under the name `formula`, or in the table of that
-    /// name.
+    /// Whether an expression here may have variables: directly under one of these names, or in the table of that name.
     formula: Option<Level>,
 }
 
@@ -131,9 +133,9 @@ impl Place {
     const TOP: Self = Self { depth: 1, formula: None };
 
     /// The place of an entry of the table that stands here. The first two names are the family and the name of
-    /// a definition, which may well be called `formula`.
+    /// a definition, which may well be called so.
     fn entry(self, name: &str) -> Self {
-        let formula = if name == "formula" && self.depth >= 2 {
+        let formula = if TAKES_FORMULAS.contains(&name) && self.depth >= 2 {
             Some(Level::Named)
         } else if self.formula == Some(Level::Named) {
             Some(Level::Inside)

@@ -11,6 +11,8 @@ use crate::language::spec::conic::{Conic, Hyperbola, Parabola, check_turn};
 use crate::language::spec::construct::{kinds, table};
 use crate::language::spec::cubic::{BetaSpline, Cubic};
 use crate::language::spec::formula::FormulaCurve;
+use crate::language::spec::implicit::Implicit;
+use crate::language::spec::operation::{Chamfer, Fillet, Offset, ProfileSet};
 use crate::language::spec::part::{CurveGroup, Part};
 use crate::language::spec::path::Path;
 use crate::language::spec::point::{Point, Scale};
@@ -74,12 +76,29 @@ kinds! {
         SubdivisionCurve(SubdivisionCurve) = "subdivision";
         /// Lines, arcs and splines joined end to end.
         Path(Path) = "path";
+        /// Where a formula of x and y is zero.
+        Implicit(Implicit) = "implicit";
         /// The path of an SVG drawing.
         Svg(Svg) = "svg";
         /// Several curves as the parts of one.
         Group(CurveGroup) = "group";
         /// One part of a curve that has several.
         Part(Part) = "part";
+        /// A closed curve, moved outward or inward.
+        Offset(Offset) = "offset";
+        /// What lies in any of several closed curves.
+        Union(ProfileSet) = "union";
+        /// What lies in a closed curve and not in others.
+        Difference(ProfileSet) = "difference";
+        /// What lies in all of several closed curves.
+        Intersection(ProfileSet) = "intersection";
+        /// What lies in an odd number of several closed curves. Where these cross, its parts touch in corners: lines show
+        /// them, but no solid stands on them.
+        Xor(ProfileSet) = "xor";
+        /// A flat curve with rounded corners.
+        Fillet(Fillet) = "fillet";
+        /// A flat curve with corners cut off.
+        Chamfer(Chamfer) = "chamfer";
         /// Another curve, run through from its end to its start.
         Reverse(Reverse) = "reverse";
         /// Another curve, scaled, rotated and moved.

@@ -6,8 +6,8 @@ use crate::language::spec::reference::CurveReference;
 use crate::language::spec::spanned::Sp;
 
 table! {
-    /// Several curves as the parts of one, where a curve may have several: the profile of an extrude or a sheet, or the
-    /// curves of a wire. They are not joined.
+    /// Several curves as the parts of one, where a curve may have several: the profile of an extrude or a sheet, the
+    /// curves of a wire, operations on profiles. They are not joined.
     "curve group" pub CurveGroup {
         /// The curves, by name or in place; all parts of each.
         of: Vec<CurveReference> => Check::items(1);
