@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Sets Kiln beside its peers on the same work in one run: whole processes, medians, quality beside speed.
 
-    scripts/bench.py                  vase and sweep on a fixed grid, the vase within 0.1 mm, peak memory,
+    scripts/bench.py                  vase, sweep and loft on a fixed grid, the vase within 0.1 mm, peak memory,
                                       evaluation of curves, every spec of the gallery
-    scripts/bench.py --only vase      one part: vase, sweep, tolerance, memory, curves or gallery
+    scripts/bench.py --only vase      one part: vase, sweep, loft, tolerance, memory, curves or gallery
     scripts/bench.py --large          memory up to an output of 1 GB
     scripts/bench.py --json FILE      the figures as JSON too
     scripts/bench.py --readme         also renews the tables between the markers in README.md
@@ -35,7 +35,7 @@ PYTHON = ROOT / ".venv" / "bin" / "python"
 CAD_PYTHON = ROOT / ".venv-peers" / "bin" / "python"
 KILN = Path(os.environ.get("KILN_BIN", ROOT / "target" / "release" / "kiln"))
 MARKERS = ("<!-- bench:begin -->", "<!-- bench:end -->")
-PARTS = ("vase", "sweep", "tolerance", "memory", "curves", "gallery")
+PARTS = ("vase", "sweep", "loft", "tolerance", "memory", "curves", "gallery")
 
 TOLERANCE = 1e-4  # meters: a tenth of a millimeter on a vase of two meters
 # CadQuery's own tolerance is steered until its measured deviation is Kiln's; its angle is set out of the way.
@@ -121,6 +121,8 @@ def peer_entries(case: str, folder: Path) -> list[Runs]:
         out = folder / f"{case}-{tool}.glb"
         return Runs(name, [str(python), str(PEERS / f"peer_{tool}.py"), case, str(out)], out)
 
+    if case == "loft":  # the others have no lofts with splines
+        return [script("Blender", PYTHON, "blender")]
     off, jscad = folder / f"{case}-openscad.off", folder / f"{case}-jscad.glb"
     node = ["node", str(PEERS / "peer_jscad.mjs"), case, str(folder / "jscad.json"), str(jscad)]
     return [
@@ -218,7 +220,7 @@ def memory(folder: Path, steps: list[float]) -> Part:
 def tables(figures: dict[str, Any]) -> str:
     """The figures as Markdown."""
     blocks = [f"Measured on {figures['machine']}, {figures['date']}, median of {figures['runs']} whole processes."]
-    cases = [case for case in ("vase", "sweep") if case in figures]
+    cases = [case for case in ("vase", "sweep", "loft") if case in figures]
     blocks += [grid_table(case, figures[case]["rows"]) for case in cases]
     if "tolerance" in figures:
         blocks.append(tolerance_table(figures["tolerance"]["rows"]))
@@ -233,7 +235,11 @@ def tables(figures: dict[str, Any]) -> str:
 
 def grid_table(case: str, rows: list[dict[str, Any]]) -> str:
     """One model by all tools."""
-    size = {"vase": "128 x 256 quads, closed", "sweep": "64 x 512 quads, closed"}[case]
+    sizes = {
+        "vase": "128 x 256 quads, closed",
+        "sweep": "64 x 512 quads, closed",
+        "loft": "128 x 128 quads, closed",
+    }
     head = ["tool", "ms", "times Kiln", "cpu ms", "peak MB", "triangles", "bytes", "deviation", "closed"]
     body = [
         [
@@ -245,7 +251,7 @@ def grid_table(case: str, rows: list[dict[str, Any]]) -> str:
         else [row["tool"], "failed", *["-"] * (len(head) - 2)]
         for row in rows
     ]  # fmt: skip
-    return f"**{case}** ({size})\n\n{markdown(head, body)}"
+    return f"**{case}** ({sizes[case]})\n\n{markdown(head, body)}"
 
 
 def tolerance_table(rows: list[dict[str, Any]]) -> str:

@@ -1,7 +1,8 @@
 """The models that every tool makes from the same numbers, as plain Python without any library.
 
 `vase`: two cubic Beziers (radius, height) revolved once; both ends lie on the axis. `sweep`: a circle of
-radius 0.15 along an open space curve through 513 points.
+radius 0.15 along an open space curve through 513 points. `loft`: the natural cubic spline through three circles
+about one axis, which is what the natural spline through (radius, height) makes when it is turned.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ BEZIERS = (
 PROFILE_SEGMENTS, TURN_SEGMENTS = 128, 256
 TUBE_RADIUS, TUBE_SEGMENTS, PATH_SEGMENTS = 0.15, 64, 512
 PATH_END = 4.0
+LOFT_RINGS = ((1.0, 0.0), (0.4, 1.0), (0.7, 3.0))
+LOFT_AROUND, LOFT_ALONG = 128, 128
 
 Pair = tuple[float, float]
 Triple = tuple[float, float, float]
@@ -57,6 +60,26 @@ def frames() -> list[tuple[Triple, Triple, Triple]]:
         normal = unit(minus(normal, (tangent[0] * off, tangent[1] * off, tangent[2] * off)))
         found.append((normal, cross(tangent, normal), tangent))
     return found
+
+
+def loft_profile(segments: int = LOFT_ALONG) -> list[Pair]:
+    """The loft's outline (radius, height) at equal steps of its parameter, which grows with the chords.
+
+    Of a natural spline through three points only the second derivative at the middle one is unknown.
+    """
+    first, middle, last = LOFT_RINGS
+    before, after = math.dist(first, middle), math.dist(middle, last)
+
+    def between(t: float, axis: int) -> float:
+        a, b, c = first[axis], middle[axis], last[axis]
+        bend = 3.0 * ((c - b) / after - (b - a) / before) / (before + after)
+        if t <= before:
+            return a + (b - a) * t / before + bend * t * (t * t - before * before) / (6.0 * before)
+        s = before + after - t
+        return c + (b - c) * s / after + bend * s * (s * s - after * after) / (6.0 * after)
+
+    places = [(before + after) * k / segments for k in range(segments + 1)]
+    return [(between(t, 0), between(t, 1)) for t in places]
 
 
 def vase_optimum(tolerance: float) -> float:

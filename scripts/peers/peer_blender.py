@@ -1,14 +1,24 @@
-"""Blender: the screw modifier and the curve bevel, exported by its own glTF exporter.
+"""Blender: the screw modifier, the curve bevel and a mesh of rings, exported by its own glTF exporter.
 
 `peer_blender.py CASE OUT.glb`
 """
 
 from __future__ import annotations
 
+import math
 import sys
 
 import bpy  # isort: skip -- the wheel makes the rest importable
-from models import PROFILE_SEGMENTS, TUBE_RADIUS, TUBE_SEGMENTS, TURN_SEGMENTS, path, profile
+from models import (
+    LOFT_AROUND,
+    PROFILE_SEGMENTS,
+    TUBE_RADIUS,
+    TUBE_SEGMENTS,
+    TURN_SEGMENTS,
+    loft_profile,
+    path,
+    profile,
+)
 
 
 def vase() -> None:
@@ -39,6 +49,25 @@ def sweep() -> None:
     bpy.ops.object.convert(target="MESH")
 
 
+def loft() -> None:
+    """Rings of the spline through three circles, bridged by quads; Blender's own bridge makes no splines."""
+    count, rings = LOFT_AROUND, loft_profile()
+    turns = [2.0 * math.pi * k / count for k in range(count)]
+    points = [(r * math.cos(a), r * math.sin(a), z) for r, z in rings for a in turns]
+    faces = [
+        (row * count + k, row * count + (k + 1) % count, (row + 1) * count + (k + 1) % count, (row + 1) * count + k)
+        for row in range(len(rings) - 1)
+        for k in range(count)
+    ]
+    last = (len(rings) - 1) * count
+    faces += [tuple(reversed(range(count))), tuple(range(last, last + count))]
+    mesh = bpy.data.meshes.new("loft")
+    mesh.from_pydata(points, [], faces)
+    mesh.shade_smooth()
+    mesh.set_sharp_from_angle(angle=math.radians(30.0))
+    show(mesh)
+
+
 def show(data: bpy.types.ID) -> bpy.types.Object:
     """An object of the scene for mesh or curve data."""
     item = bpy.data.objects.new(data.name, data)
@@ -48,5 +77,5 @@ def show(data: bpy.types.ID) -> bpy.types.Object:
 
 if __name__ == "__main__":
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    {"vase": vase, "sweep": sweep}[sys.argv[1]]()
+    {"vase": vase, "sweep": sweep, "loft": loft}[sys.argv[1]]()
     bpy.ops.export_scene.gltf(filepath=sys.argv[2], export_apply=True, export_animations=False)

@@ -16,7 +16,7 @@ import numpy as np
 import trimesh
 from scipy.spatial import cKDTree
 
-from models import BEZIERS, PATH_END, TUBE_RADIUS, path_point
+from models import BEZIERS, PATH_END, TUBE_RADIUS, loft_profile, path_point
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,7 +33,7 @@ SPREAD = [
 def measure(case: str, file: Path) -> dict[str, Any]:
     """Triangles, bytes, closedness, volume and deviation of one file."""
     mesh = load(file)
-    deviation = {"vase": vase_deviation, "sweep": sweep_deviation}[case](mesh)
+    deviation = {"vase": vase_deviation, "sweep": sweep_deviation, "loft": loft_deviation}[case](mesh)
     return {
         "triangles": len(mesh.faces),
         "bytes": file.stat().st_size,
@@ -95,6 +95,25 @@ def vase_curve() -> NDArray[np.float64]:
     weights = np.hstack([s**3, 3 * s * s * t, 3 * s * t * t, t**3])
     low, high = (weights @ control for control in np.array(BEZIERS))
     return np.concatenate([low, high[1:]])  # no point twice: distances look at the pieces beside one point
+
+
+def loft_deviation(mesh: trimesh.Trimesh) -> float:
+    """The largest distance to the outline in the plane of radius and height, the flat ends left out.
+
+    The loft is 3 high along its axis and 2 wide.
+    """
+    axis = int(np.argmax(mesh.extents))
+    points = spread(mesh)
+    height = points[:, axis] - mesh.bounds[0][axis]
+    radius = np.linalg.norm(np.delete(points, axis, axis=1), axis=1)
+    upright = np.column_stack([radius, height])
+    curve = np.array(loft_profile(CURVE_SAMPLES))
+    inner = 1e-6  # single precision of a height of 3
+    found = []
+    for way in (upright, upright * [1, -1] + [0, 3]):
+        walls = way[(way[:, 1] > inner) & (way[:, 1] < 3 - inner)]
+        found.append(largest(walls, curve))
+    return min(found)
 
 
 def sweep_deviation(mesh: trimesh.Trimesh) -> float:

@@ -31,6 +31,7 @@ def write(folder: Path) -> None:
     """Write every input file."""
     (folder / "vase.toml").write_text(kiln_vase(models.PROFILE_SEGMENTS, models.TURN_SEGMENTS))
     (folder / "sweep.toml").write_text(kiln_sweep())
+    (folder / "loft.toml").write_text(kiln_loft())
     (folder / "tolerance.toml").write_text(kiln_vase_within(1e-4))
     profile = json.dumps(models.profile())
     (folder / "vase.scad").write_text(f"rotate_extrude($fn = {models.TURN_SEGMENTS}) polygon({profile});\n")
@@ -78,4 +79,15 @@ def kiln_sweep() -> str:
         f"[shape.sweep]\nsegments = [{models.TUBE_SEGMENTS}, {models.PATH_SEGMENTS}]\n\n"
         "[shape.sweep.sweep]\n"
         f'profile = {{ circle = {{ radius = {models.TUBE_RADIUS} }} }}\npath = "path"\n'
+    )
+
+
+def kiln_loft() -> str:
+    """The smooth loft through three circles on a fixed grid."""
+    rings = ", ".join(
+        f"{{ circle = {{ radius = {radius}, center = [0, 0, {height}] }} }}" for radius, height in models.LOFT_RINGS
+    )
+    return (
+        f"[shape.loft]\nsegments = [{models.LOFT_AROUND}, {models.LOFT_ALONG}]\n\n"
+        f"[shape.loft.loft]\nprofiles = [{rings}]\n"
     )
