@@ -4,9 +4,9 @@ use glam::{DVec2, DVec3};
 
 use super::super::discretize::{Density, Station, arc_lengths, discretize};
 use super::super::{Detail, SurfaceDensity, TessellateError};
-use super::columns::Columns;
+use super::columns::{Columns, Plain};
 use crate::geometry::curve::{Curve, Domain, Jet, Side};
-use crate::geometry::surface::{Stand, SweptSurface};
+use crate::geometry::surface::{Plane, Stand, SweptSurface};
 
 /// A section of the mesh.
 pub(super) struct Row {
@@ -62,7 +62,10 @@ pub(super) fn cut(
     aim: f64,
 ) -> Result<Vec<Row>, TessellateError> {
     let judged = matches!(detail.density, SurfaceDensity::Tolerance(_));
-    let traced = Traced { surface, samples: samples(columns), columns, reach: surface.reach(), judged };
+    let samples = samples(columns);
+    let plain = samples.iter().filter_map(|(outline, column)| columns[*outline].plain().get(*column));
+    let places = plain.map(Plain::place).collect();
+    let traced = Traced { surface, samples, places, columns, reach: surface.reach(), judged };
     let limit = detail.triangle_limit;
     let stations = match detail.density {
         SurfaceDensity::Grid { v, .. } => discretize(&traced, Density::Count(v), limit)?,
@@ -91,6 +94,8 @@ struct Traced<'a> {
     surface: &'a SweptSurface,
     columns: &'a [Columns],
     samples: Vec<(usize, usize)>,
+    /// Where the samples are in a section that does not change.
+    places: Vec<DVec2>,
     reach: f64,
     /// Whether chords are to be judged at all.
     judged: bool,
@@ -101,18 +106,27 @@ impl Traced<'_> {
         stand.point(&self.columns[outline].at(column, Some(Side::After), &stand.mix))
     }
 
-    /// How far the lines of the samples leave their chords.
-    fn bend(&self, ends: (&Stand, &Stand), middles: &[Stand]) -> f64 {
-        let away = |sample: &(usize, usize)| {
-            let (start, end) = (self.point(ends.0, *sample), self.point(ends.1, *sample));
+    /// How far the lines of the samples leave their chords; `point` tells where a sample stands in a section.
+    fn bend<P>(&self, (from, to): (&P, &P), middles: &[P], point: impl Fn(&P, usize) -> DVec3) -> f64 {
+        let away = |sample: usize| {
+            let (start, end) = (point(from, sample), point(to, sample));
             let direction = (end - start).normalize_or_zero();
-            let across = |middle: &Stand| {
-                let away = self.point(middle, *sample) - start;
+            let across = |middle: &P| {
+                let away = point(middle, sample) - start;
                 (away - direction * away.dot(direction)).length_squared()
             };
             middles.iter().map(across).fold(0.0, f64::max)
         };
-        self.samples.iter().map(away).fold(0.0, f64::max).sqrt()
+        (0..self.samples.len()).map(away).fold(0.0, f64::max).sqrt()
+    }
+
+    /// The same for a section that does not change: only its plane moves.
+    fn plain_bend(&self, from: f64, to: f64) -> f64 {
+        let carrier = &self.surface.carrier;
+        let (start, end) = (carrier.plane(from, Side::After), carrier.plane(to, Side::Before));
+        let middle = |part: f64| carrier.plane(from + (to - from) * part, Side::After);
+        let point = |plane: &Plane, sample: usize| plane.point(self.places[sample].x, self.places[sample].y);
+        self.bend((&start, &end), &[0.25, 0.5, 0.75].map(middle), point)
     }
 
     /// What the diagonals of cells leave out because the section changes its form between two places.
@@ -155,19 +169,21 @@ impl Curve for Traced<'_> {
         if !self.judged || surface.is_straight(from, to) {
             return 0.0;
         }
-        let (start, end) = (surface.stand(from, Side::After), surface.stand(to, Side::Before));
         // Samples of a chord over whole turns see nothing: such a chord is judged by the way's own bound, and by
         // how far the section turns on it.
         let mut deviation = carrier.bend(from, to, self.reach) / GUARD;
         if carrier.turn_between(from, to).abs() > GREATEST_TWIST {
             deviation = deviation.max(self.reach);
         }
-        if !surface.change.is_constant() {
-            let bend = surface.change.scale.bend(surface.share(from), surface.share(to));
-            deviation = deviation.max(bend * self.reach / GUARD).max(self.warp(&start, &end));
+        if surface.change.is_constant() {
+            return deviation.max(self.plain_bend(from, to)) * MARGIN;
         }
+        let (start, end) = (surface.stand(from, Side::After), surface.stand(to, Side::Before));
+        let bend = surface.change.scale.bend(surface.share(from), surface.share(to));
+        deviation = deviation.max(bend * self.reach / GUARD).max(self.warp(&start, &end));
         let middle = |part: f64| surface.stand(from + (to - from) * part, Side::After);
-        deviation = deviation.max(self.bend((&start, &end), &[0.25, 0.5, 0.75].map(middle)));
+        let point = |stand: &Stand, sample: usize| self.point(stand, self.samples[sample]);
+        deviation = deviation.max(self.bend((&start, &end), &[0.25, 0.5, 0.75].map(middle), point));
         deviation * MARGIN
     }
 }
