@@ -48,3 +48,8 @@ pub mod report;
 pub mod scene;
 
 pub use compile::compile;
+
+/// The lines of the README that a build script takes are compiled with the documentation's tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
