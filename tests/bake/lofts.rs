@@ -194,3 +194,18 @@ fn an_open_loft_of_different_curves_lies_within_its_bound() {
         assert!(deviation.measured.expect("asked for") <= deviation.bound, "{deviation:?}");
     }
 }
+
+/// Through circles in one plane the surface folds along a ring, where no triangle is ever good: it ends all the same,
+/// and says how far it may be off.
+#[test]
+fn a_loft_that_folds_in_its_own_plane_comes_to_an_end() {
+    let text = "tolerance = 0.05\n[shape.a.loft]\nprofiles = [{ circle = { radius = 1 } }, \
+         { circle = { radius = 2 } }, { circle = { radius = 1.5 } }]\ncaps = false";
+    let compiled = compile(text, &Options::default()).unwrap_or_else(|found| panic!("{found}"));
+    let shape = &compiled.report.expect("a report").shapes[0];
+    assert!(shape.facts.triangles < 400_000, "{}", shape.facts.triangles);
+    let told = compiled.warnings.iter().any(|warning| warning.message.contains("more than its tolerance"));
+    assert_eq!(told, shape.deviation.bound > 0.05, "{:?}", shape.deviation);
+    let bounds = shape.facts.bounds.expect("there are points");
+    assert!(bounds.max[0] >= 2.0 - 0.05 && bounds.max[0] < 2.1, "{bounds:?}");
+}

@@ -1,7 +1,7 @@
 //! NURBS surfaces from NURBS curves, exact: moved, turned, swept, ruled.
 //!
 //! Curves and surfaces are in homogeneous coordinates (w x, w y, w z, w). A motion whose matrices are a B-spline
-//! moves a curve through a tensor product: M(v) P(u) has the control points M[j] P[i]. Moving along a curve and
+//! moves a curve through a tensor product: M(v) P(u) has the control points `M[j] P[i]`. Moving along a curve and
 //! turning about an axis are such motions.
 //!
 //! Sources: L. Piegl, W. Tiller, The NURBS Book, 2nd ed. 1997, 8.3 to 8.5 and 10.4; B. Juettler, M. Wagner,

@@ -14,16 +14,21 @@ use crate::geometry::tessellate::{Detail, Deviation, TessellateError};
 /// Rounds after which a surface is as rough as its samples: each round halves sides.
 const ROUNDS: usize = 24;
 
+/// Times the triangles of the plan, and triangles on top of them, after which refining has no end: a surface that folds
+/// in its own plane has a line along which no triangle is good. The bound then says what is left.
+const MOST: (u64, u64) = (64, 50_000);
+
 /// Sides that bend by this share of the worst are split with it.
 const LIKE_THE_WORST: f64 = 0.55;
 
-/// Refines until every triangle is within the tolerance; gives the bound of all.
+/// Refines until every triangle is within the tolerance, or has no end; gives the bound of all.
 pub(super) fn refine(
     net: &mut Net<'_>,
     tolerance: f64,
     detail: &Detail,
 ) -> Result<Deviation, TessellateError> {
     let mut deviation = Deviation::NONE;
+    let most = net.triangles().saturating_mul(MOST.0).saturating_add(MOST.1);
     // Triangles that have not been judged, by block.
     let mut fresh: Vec<Vec<u32>> =
         net.pieces.iter().map(|piece| (0..index(piece.triangles.len())).collect()).collect();
@@ -44,7 +49,7 @@ pub(super) fn refine(
                 }
             }
         }
-        let done = marks.is_empty() || round == ROUNDS;
+        let done = marks.is_empty() || round == ROUNDS || net.triangles() > most;
         // A triangle that is good may still be split by its neighbours; its parts are judged again.
         for (block, number, own) in kept {
             let split = !done && sides(net, block, number).iter().any(|side| marks.contains_key(side));
