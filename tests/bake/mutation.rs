@@ -1,7 +1,7 @@
 //! The gallery with random damage: never a panic, every refusal says where, every result can be read.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use kiln::compile::{Compiled, Options};
 use kiln::language::Document;
@@ -11,23 +11,27 @@ use kiln::language::source::MemoryFiles;
 use super::glb::Glb;
 use crate::laws::Dice;
 
+/// What a folder holds, by name.
+fn entries(folder: &Path) -> Vec<PathBuf> {
+    let read = std::fs::read_dir(folder).expect("the gallery");
+    let mut found: Vec<_> = read.map(|entry| entry.expect("it is read").path()).collect();
+    found.sort();
+    found
+}
+
 /// Documents to damage: the gallery, and one that uses the rest of the language.
 fn seeds() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("specs");
     let mut seeds = Vec::new();
-    for folder in ["built", "imported", "swept", "turned"] {
-        let mut files: Vec<_> = std::fs::read_dir(root.join(folder))
-            .expect("the gallery")
-            .map(|entry| entry.expect("it is read").path())
-            .collect();
-        files.sort();
-        for file in files {
-            let name = format!("specs/{folder}/{}", file.file_name().unwrap_or_default().to_string_lossy());
+    for folder in entries(&root).iter().filter(|path| path.is_dir()) {
+        for file in entries(folder).iter().filter(|path| path.extension().is_some_and(|end| end == "toml")) {
+            let place = file.strip_prefix(env!("CARGO_MANIFEST_DIR")).expect("inside");
+            let name = place.to_string_lossy().replace('\\', "/");
             seeds.push((name, std::fs::read_to_string(file).expect("specs are text")));
         }
     }
     seeds.push(("specs/own.toml".to_owned(), OWN.to_owned()));
-    assert!(seeds.len() >= 7);
+    assert!(seeds.len() > 30);
     seeds
 }
 
