@@ -26,8 +26,7 @@ impl Surface for ExtrudedSurface {
         Domain { start: 0.0, end: self.height }
     }
 
-    fn evaluate(&self, u: f64, v: f64) -> SurfaceJet {
-        let side = if u >= self.domain_u().end { Side::Before } else { Side::After };
+    fn sided(&self, (u, side): (f64, Side), (v, _): (f64, Side)) -> SurfaceJet {
         let jet = self.profile.evaluate(u, side);
         let direction = self.profile.direction(u, side);
         SurfaceJet {

@@ -296,11 +296,6 @@ impl Surface for LoftedSurface {
         self.weights[0].domain()
     }
 
-    fn evaluate(&self, u: f64, v: f64) -> SurfaceJet {
-        let side = |t: f64, end: f64| if t >= end { Side::Before } else { Side::After };
-        self.sided((u, side(u, 1.0)), (v, side(v, self.domain_v().end)))
-    }
-
     fn sided(&self, u: (f64, Side), v: (f64, Side)) -> SurfaceJet {
         let (mut jet, second) = self.both(u, v);
         let span = self.domain_v().span();

@@ -63,13 +63,15 @@ pub trait Surface: Send + Sync {
     /// Interval of v.
     fn domain_v(&self) -> Domain;
 
-    /// Point, tangents and normal; parameters outside the domain are taken as the nearer end.
-    fn evaluate(&self, u: f64, v: f64) -> SurfaceJet;
+    /// Point, tangents and normal from one side in each parameter: they differ where the surface has an edge or a
+    /// seam. Parameters outside the domain are taken as the nearer end.
+    fn sided(&self, u: (f64, Side), v: (f64, Side)) -> SurfaceJet;
 
-    /// The same from one side in each parameter: they differ where the surface has an edge or a seam.
-    fn sided(&self, u: (f64, Side), v: (f64, Side)) -> SurfaceJet {
-        let _ = (u.1, v.1);
-        self.evaluate(u.0, v.0)
+    /// The same with the sides after the parameters, at the ends of the domain before them.
+    #[inline]
+    fn evaluate(&self, u: f64, v: f64) -> SurfaceJet {
+        let side = |t: f64, domain: Domain| if t >= domain.end { Side::Before } else { Side::After };
+        self.sided((u, side(u, self.domain_u())), (v, side(v, self.domain_v())))
     }
 
     /// Second derivatives from one side in each parameter. Where a surface knows no better, differences of its

@@ -27,10 +27,9 @@ impl Surface for RevolvedSurface {
         self.profile.domain()
     }
 
-    fn evaluate(&self, u: f64, v: f64) -> SurfaceJet {
+    fn sided(&self, (u, _): (f64, Side), (v, side): (f64, Side)) -> SurfaceJet {
         let domain = self.domain_v();
         let v = v.clamp(domain.start, domain.end);
-        let side = if v == domain.end { Side::Before } else { Side::After };
         let jet = self.profile.evaluate(v, side);
         let (sin, cos) = sin_cos_degrees(u.clamp(self.start, self.start + self.angle));
         let turned = |plane: DVec3| DVec3::new(plane.x * cos, plane.y, -plane.x * sin);

@@ -83,11 +83,6 @@ impl Surface for RuledSurface {
         Domain { start: 0.0, end: 1.0 }
     }
 
-    fn evaluate(&self, u: f64, v: f64) -> SurfaceJet {
-        let side = |t: f64| if t >= 1.0 { Side::Before } else { Side::After };
-        self.sided((u, side(u)), (v, side(v)))
-    }
-
     fn sided(&self, u: (f64, Side), v: (f64, Side)) -> SurfaceJet {
         let (a, b) = (self.from.evaluate(u.0, u.1), self.to.evaluate(u.0, u.1));
         let part = v.0.clamp(0.0, 1.0);

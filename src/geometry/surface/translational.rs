@@ -35,11 +35,6 @@ impl Surface for TranslationalSurface {
         Domain { start: 0.0, end: 1.0 }
     }
 
-    fn evaluate(&self, u: f64, v: f64) -> SurfaceJet {
-        let side = |t: f64| if t >= 1.0 { Side::Before } else { Side::After };
-        self.sided((u, side(u)), (v, side(v)))
-    }
-
     fn sided(&self, u: (f64, Side), v: (f64, Side)) -> SurfaceJet {
         let (p, q) = (self.profile.evaluate(u.0, u.1), self.path.evaluate(v.0, v.1));
         let second = SecondJet { uu: p.second, uv: DVec3::ZERO, vv: q.second };

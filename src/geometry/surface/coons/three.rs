@@ -282,11 +282,6 @@ impl Surface for ThreeSidedSurface {
         Domain { start: 0.0, end: 1.0 }
     }
 
-    fn evaluate(&self, u: f64, v: f64) -> SurfaceJet {
-        let side = |t: f64| if t >= 1.0 { Side::Before } else { Side::After };
-        self.sided((u, side(u)), (v, side(v)))
-    }
-
     fn sided(&self, u: (f64, Side), v: (f64, Side)) -> SurfaceJet {
         let (at_u, at_v) = (u.0.clamp(0.0, 1.0), v.0.clamp(0.0, 1.0));
         let place = self.place(at_u, at_v);

@@ -296,11 +296,6 @@ impl Surface for TransfiniteSurface {
         Domain { start: self.v.start(), end: self.v.end() }
     }
 
-    fn evaluate(&self, u: f64, v: f64) -> SurfaceJet {
-        let side = |t: f64, end: f64| if t >= end { Side::Before } else { Side::After };
-        self.sided((u, side(u, self.u.end())), (v, side(v, self.v.end())))
-    }
-
     fn sided(&self, u: (f64, Side), v: (f64, Side)) -> SurfaceJet {
         let place = self.place(u, v);
         let normal = limit::normal((place.du, place.dv), &place.second, (u.1, v.1))

@@ -174,12 +174,11 @@ impl Surface for SweptWall {
         self.surface.carrier.domain()
     }
 
-    fn evaluate(&self, u: f64, v: f64) -> SurfaceJet {
-        let side_of = |t: f64, domain: Domain| if t >= domain.end { Side::Before } else { Side::After };
+    fn sided(&self, (u, side_u): (f64, Side), (v, side_v): (f64, Side)) -> SurfaceJet {
         let (across, along) = (self.domain_u(), self.domain_v());
         let (u, v) = (u.clamp(across.start, across.end), v.clamp(along.start, along.end));
-        let stand = self.surface.stand(v, side_of(v, along));
-        let point = self.outline().at(u, side_of(u, across), &stand.mix);
+        let stand = self.surface.stand(v, side_v);
+        let point = self.outline().at(u, side_u, &stand.mix);
         SurfaceJet {
             point: stand.point(&point),
             du: stand.plane.across(point.across),

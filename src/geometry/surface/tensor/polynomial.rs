@@ -125,12 +125,6 @@ fn joints(patches: &Patches<DVec3>) -> Vec<f64> {
     (1..columns).filter(|column| jumps(*column)).map(|column| patches.breaks().0[column]).collect()
 }
 
-/// The sides from which the ends of a domain are seen.
-#[inline]
-pub(super) fn sides(domain: Domain, t: f64) -> (f64, Side) {
-    (t, if t >= domain.end { Side::Before } else { Side::After })
-}
-
 impl Surface for PolynomialSurface {
     fn domain_u(&self) -> Domain {
         self.patches.domain_u()
@@ -138,11 +132,6 @@ impl Surface for PolynomialSurface {
 
     fn domain_v(&self) -> Domain {
         self.patches.domain_v()
-    }
-
-    #[inline]
-    fn evaluate(&self, u: f64, v: f64) -> SurfaceJet {
-        self.sided(sides(self.domain_u(), u), sides(self.domain_v(), v))
     }
 
     #[inline]

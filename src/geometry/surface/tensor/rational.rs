@@ -4,7 +4,7 @@ use glam::{DVec3, DVec4};
 use thiserror::Error;
 
 use super::patches::{Patches, PatchesError};
-use super::polynomial::{SAME, sides};
+use super::polynomial::SAME;
 use super::range::{self, projected};
 use super::{Grid, TensorSpline, normal};
 use crate::geometry::curve::control::product;
@@ -183,11 +183,6 @@ impl Surface for RationalSurface {
 
     fn domain_v(&self) -> Domain {
         self.patches.domain_v()
-    }
-
-    #[inline]
-    fn evaluate(&self, u: f64, v: f64) -> SurfaceJet {
-        self.sided(sides(self.domain_u(), u), sides(self.domain_v(), v))
     }
 
     #[inline]
