@@ -15,7 +15,8 @@
 //! | `geometry::curve` | `geometry::number`, `geometry::formula` |
 //! | `geometry::mesh` | `geometry::number`, `geometry::planar` |
 //! | `geometry::surface` | `geometry::number`, `geometry::curve` |
-//! | `geometry::tessellate` | `geometry::number`, `geometry::planar`, `geometry::curve`, `geometry::mesh`, `geometry::surface` |
+//! | `geometry::field` | `geometry::number` |
+//! | `geometry::tessellate` | `geometry::number`, `geometry::planar`, `geometry::curve`, `geometry::mesh`, `geometry::surface`, `geometry::field` |
 //! | `geometry::profile` | `geometry::number`, `geometry::planar`, `geometry::curve`, `geometry::tessellate` |
 //! | `import` | `geometry::number`, `geometry::mesh` |
 //! | `model` | `geometry` |

@@ -17,6 +17,7 @@ mod patches;
 mod paths;
 mod polygons;
 mod primitives;
+mod quadrics;
 mod refusals;
 mod shading;
 mod shapes;

@@ -26,6 +26,7 @@ mod path;
 mod polygon;
 mod primitive;
 mod profile;
+mod quadric;
 mod ruled;
 mod scaling;
 mod shape;

@@ -105,6 +105,7 @@ impl Builder<'_> {
             Kind::BSpline(surface) => self.b_spline_surface(surface, span).map(here),
             Kind::Nurbs(surface) => self.nurbs_surface(surface, span).map(here),
             Kind::Coons(patch) => self.coons(patch).map(here),
+            Kind::Quadric(quadric) => self.quadric(quadric, span).map(here),
             Kind::Gordon(network) => self.gordon(network, span).map(here),
             Kind::Mesh(mesh) => self.mesh(mesh, span).map(here),
             Kind::Import(import) => self.import(import, span).map(here),

@@ -4,6 +4,7 @@
 //! give the same bits on every machine.
 
 pub mod curve;
+pub mod field;
 pub mod formula;
 pub mod mesh;
 pub mod number;

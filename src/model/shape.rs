@@ -6,7 +6,7 @@ use super::MaterialHandle;
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::tessellate::{
-    Extrusion, FlatPlane, Geodesic, Patchwork, Revolution, RoundedBox, Sheet, Sweep,
+    ClippedQuadric, Extrusion, FlatPlane, Geodesic, Patchwork, Revolution, RoundedBox, Sheet, Sweep,
 };
 
 /// Index of a shape in its model.
@@ -52,6 +52,8 @@ pub enum Recipe {
     Sheet(Sheet),
     /// Curves as lines.
     Wire(Vec<AnyCurve>),
+    /// A surface of the second degree, cut off.
+    Quadric(ClippedQuadric),
     /// Polygons, written out or imported. For each of their materials the model's, if it has one.
     Polygons {
         /// The polygons.

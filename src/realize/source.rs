@@ -7,10 +7,11 @@ use glam::{DAffine3, DVec3};
 use super::nearest::Field;
 use super::shape::frame_map;
 use crate::geometry::curve::{AnyCurve, Curve, Domain, Side, nearest_within};
+use crate::geometry::field::Quadric;
 use crate::geometry::mesh::{self, Anchor};
 use crate::geometry::number::{Bounds, hypot};
 use crate::geometry::surface::{AnySurface, Surface as _, SweptWall};
-use crate::geometry::tessellate::{Density, RoundedBox, Route, discretize};
+use crate::geometry::tessellate::{ClippedQuadric, Density, RoundedBox, Route, discretize};
 use crate::model::{Model, Recipe, ShapeHandle};
 
 /// How many surfaces the anchors of a recipe tell apart.
@@ -27,6 +28,7 @@ pub(super) fn source_count(recipe: &Recipe) -> u32 {
         | Recipe::Plane(_)
         | Recipe::Sheet(_) => 1,
         Recipe::Wire(curves) => mesh::index(curves.len()),
+        Recipe::Quadric(_) => ClippedQuadric::SOURCES,
         Recipe::Assembly(_) => 0,
     }
 }
@@ -51,6 +53,8 @@ enum Kind {
     Patch(Box<Field>),
     /// A curve by itself.
     Line(AnyCurve),
+    /// Where a polynomial is zero.
+    Quadric(Quadric),
 }
 
 /// All surfaces of a shape, by the source of an anchor.
@@ -136,6 +140,11 @@ fn collect(model: &Model, handle: ShapeHandle, outer: &DAffine3, all: &mut Vec<S
             patches.caps.iter().for_each(|_| push(Kind::Exact));
         }
         Recipe::Wire(curves) => curves.iter().for_each(|curve| push(Kind::Line(curve.clone()))),
+        Recipe::Quadric(shape) => {
+            for source in 0..ClippedQuadric::SOURCES {
+                push(shape.surface(source).map_or(Kind::Exact, Kind::Quadric));
+            }
+        }
         Recipe::Assembly(parts) => {
             for (part, inner) in parts {
                 collect(model, *part, &(map * *inner), all);
@@ -241,6 +250,9 @@ impl Source {
             Kind::Swept(wall) => super::swept::distance(wall, local, window),
             Kind::Patch(surface) => surface.distance(local, window),
             Kind::Line(curve) => distance_near(curve, local, window.u),
+            Kind::Quadric(quadric) => {
+                quadric.settled(local).map_or(f64::INFINITY, |nearest| nearest.distance(local))
+            }
         };
         away * super::shape::stretch(&self.map.matrix3)
     }
@@ -324,6 +336,7 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
         }
         Recipe::Patches(patches) => patches.surfaces.iter().map(lattice).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Wire(curves) => curves.iter().map(along).fold(Bounds::EMPTY, Bounds::union),
+        Recipe::Quadric(shape) => shape.bounds(),
         Recipe::Assembly(_) => Bounds::EMPTY,
     }
 }

@@ -7,6 +7,7 @@
 mod angle;
 mod elementary;
 mod noise;
+mod symmetric;
 mod tolerance;
 mod whole;
 
@@ -15,5 +16,6 @@ pub use elementary::{
     acos, asin, asinh, atan, atan2, cbrt, cos, cosh, exp, hypot, ln, pow, sin, sin_cos, sinh, tan, tanh,
 };
 pub use noise::{noise, noise_gradient};
+pub use symmetric::{PrincipalAxes, principal_axes};
 pub use tolerance::{Bounds, single_rounding};
 pub use whole::{count_of, floor_count, floor_index, floor_large, single, size};

@@ -33,6 +33,7 @@ mod point;
 mod polygon;
 mod primitive;
 mod profile;
+mod quadric;
 mod reader;
 mod reference;
 mod resolve;
@@ -85,6 +86,7 @@ pub use primitive::{
     Solid, Sphere, Torus, Tube,
 };
 pub use profile::{Axis, Extrude, Fill, Revolve};
+pub use quadric::{Quadric, Within};
 pub use reference::{CurveReference, Family, MaterialName, NodeName, ShapeName, ShapeReference};
 pub use ruled::{End, Ruled, Translational};
 pub use scaling::{Blend, Factor, ScaleStation, Scaling};

@@ -93,6 +93,8 @@ const CHAPTERS: [(&str, &str, &[&str]); 5] = [
             "coons",
             "coons side",
             "gordon",
+            "quadric",
+            "within",
             "mesh",
             "import",
             "copy",

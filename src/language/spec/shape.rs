@@ -19,6 +19,7 @@ use crate::language::spec::primitive::{
     BoxShape, Capsule, Cone, Cylinder, Disk, Geodesic, PlaneShape, Polyhedron, Sphere, Torus, Tube,
 };
 use crate::language::spec::profile::{Extrude, Revolve};
+use crate::language::spec::quadric::Quadric;
 use crate::language::spec::reader::{Fields, Read, Reader};
 use crate::language::spec::reference::MaterialName;
 use crate::language::spec::ruled::{Ruled, Translational};
@@ -143,6 +144,8 @@ kinds! {
         Coons(Coons) = "coons";
         /// A surface through a network of curves.
         Gordon(Gordon) = "gordon";
+        /// A surface by an equation of the second degree.
+        Quadric(Quadric) = "quadric";
         /// Points and faces, written out.
         Mesh(Mesh) = "mesh";
         /// A model from a file.

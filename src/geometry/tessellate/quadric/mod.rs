@@ -1,0 +1,188 @@
+//! Quadrics cut off by a box, alone or as closed bodies.
+//!
+//! Promise: every vertex lies on the quadric to rounding, every line on the plane that cuts it; the bound is proved by
+//! the equation itself. What the cut only touches counts as inside: walls are moved outward by a billionth of their size.
+//! Not promised: a good mesh about the apex of a cone; see [`ClippedQuadric::apex`].
+
+mod flat;
+mod judge;
+mod shell;
+mod skeleton;
+#[cfg(test)]
+mod tests;
+mod walled;
+
+use glam::DVec3;
+
+use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessellation};
+use crate::geometry::field::quadric::{HalfSpace, QuadricForm, QuadricKind};
+use crate::geometry::field::{Field, Quadric};
+use crate::geometry::number::Bounds;
+use crate::geometry::tessellate::region::Cut;
+use shell::Shell;
+use walled::TRIES;
+
+/// A quadric and where it ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClippedQuadric {
+    /// The quadric; its inside is where it is negative.
+    pub quadric: Quadric,
+    /// The box that it ends at; without one only an ellipsoid ends.
+    pub within: Option<Bounds>,
+    /// Whether it is the closed surface of all points inside of both.
+    pub closed: bool,
+}
+
+impl ClippedQuadric {
+    /// How many sources anchors may name: sheets, then faces of the cut.
+    pub const SOURCES: u32 = SHEETS + 6;
+
+    /// The polynomial that is zero on the surface of an anchor's source; none for flat faces.
+    #[must_use]
+    pub fn surface(&self, source: u32) -> Option<Quadric> {
+        (source < SHEETS && !self.form().kind.is_flat()).then_some(self.quadric)
+    }
+
+    /// What surface the quadric is, there where it is cut off.
+    #[must_use]
+    pub fn form(&self) -> QuadricForm {
+        self.within.map_or_else(
+            || QuadricForm::anywhere(&self.quadric),
+            |bounds| QuadricForm::new(&self.quadric, bounds.center(), bounds.diagonal() / 2.0),
+        )
+    }
+
+    /// The apex of a cone, where it lies inside the box or on its sides but for a millionth of its size.
+    #[must_use]
+    pub fn apex(&self) -> Option<DVec3> {
+        let (form, bounds) = (self.form(), self.within?);
+        let beyond = (bounds.min - form.origin).max(form.origin - bounds.max).max_element();
+        (form.kind == QuadricKind::Cone && beyond <= 1e-6 * bounds.diagonal()).then_some(form.origin)
+    }
+
+    /// A box that holds the shape.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        let everything = Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
+        let clip = self.within.unwrap_or(everything);
+        let form = self.form();
+        if form.kind != QuadricKind::Ellipsoid {
+            return clip;
+        }
+        // The half widths of an ellipsoid are the lengths of the rows of its axes times half lengths.
+        let reach = |row: usize| (form.axes.row(row) * form.half).length();
+        let reach = DVec3::new(reach(0), reach(1), reach(2));
+        let own = Bounds { min: form.origin - reach, max: form.origin + reach };
+        Bounds { min: clip.min.max(own.min), max: clip.max.min(own.max) }
+    }
+}
+
+/// Sheets that a quadric has at most.
+const SHEETS: u32 = 4;
+
+/// What the parts of the work have in common.
+#[derive(Clone, Copy)]
+struct Job {
+    /// How lines are cut.
+    cut: Cut,
+    /// How far triangles may lie from the surface.
+    tolerance: f64,
+    /// Points of a fixed grid.
+    lattice: Option<[u32; 2]>,
+    limit: u64,
+    uv: bool,
+    closed: bool,
+}
+
+impl Job {
+    /// The same with lines cut finer, where chords of two lines crossed.
+    fn finer(self) -> Self {
+        let cut = match self.cut {
+            Cut::Within(tolerance) => Cut::Within(tolerance / 4.0),
+            Cut::Into(count) => Cut::Into(count.saturating_mul(2)),
+        };
+        Self { cut, ..self }
+    }
+}
+
+/// The share of the tolerance that lines may use: faces beside them need some for themselves.
+const LINES: f64 = 0.9;
+
+/// Walls are moved outward by this share of the size of the box, each by its own multiple of it.
+const OUTWARD: f64 = 1e-9;
+
+/// Cuts a quadric into triangles. Anchor sources: sheets from 0, faces of the cut from 4 (x least, x greatest, y ...).
+/// A fixed grid gives each edge `u` chords and each sheet a lattice of `u` by `v` points of its plane coordinates.
+///
+/// # Errors
+/// When the limit is passed or nothing of the quadric lies inside.
+pub fn quadric(shape: &ClippedQuadric, detail: &Detail) -> Result<Tessellation, TessellateError> {
+    let (cut, tolerance, lattice) = match detail.density {
+        SurfaceDensity::Tolerance(tolerance) => (Cut::Within(LINES * tolerance), tolerance, None),
+        // Triangles of which nothing is known are split even so.
+        SurfaceDensity::Grid { u, v } => (Cut::Into(u.max(4)), f64::MAX, Some([u, v])),
+    };
+    let job =
+        Job { cut, tolerance, lattice, limit: detail.triangle_limit, uv: detail.uv, closed: shape.closed };
+    let mut job = job;
+    for _ in 0..TRIES {
+        let made = dressed(shape, &job)?;
+        // Faces beside a chord cannot be nearer to the surface than it: where its share was too great it is cut finer.
+        if made.deviation.bound > tolerance {
+            job = job.finer();
+            continue;
+        }
+        let mesh = made.shell.finish(detail.uv);
+        if mesh.triangles.is_empty() {
+            return Err(TessellateError::NoArea);
+        }
+        return Ok(Tessellation { mesh, deviation: made.deviation });
+    }
+    Err(tangled())
+}
+
+fn dressed(shape: &ClippedQuadric, job: &Job) -> Result<Made, TessellateError> {
+    let form = shape.form();
+    Ok(match shape.within {
+        Some(bounds) if form.kind.is_flat() => {
+            let negative = |point: DVec3| shape.quadric.value(point) < 0.0;
+            flat::in_walls(&form, &walls(&bounds), &negative, job)
+        }
+        Some(bounds) => {
+            let place = (bounds.center(), bounds.diagonal() / 2.0);
+            walled::in_walls(&shape.quadric, &form, &walls(&bounds), place, job)?
+        }
+        None => {
+            let place = (form.origin, form.half.length());
+            walled::in_walls(&shape.quadric, &form, &[], place, job)?
+        }
+    })
+}
+
+/// A shell and how far it is from its source.
+struct Made {
+    shell: Shell,
+    deviation: Deviation,
+}
+
+/// The sides of a box, moved outward.
+fn walls(bounds: &Bounds) -> Vec<HalfSpace> {
+    let size = bounds.diagonal();
+    let mut walls = Vec::with_capacity(6);
+    for (axis, normal) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
+        let (min, max) = (bounds.min.to_array()[axis], bounds.max.to_array()[axis]);
+        let out = |k: usize| size * OUTWARD * (1.0 + 0.137 * k as f64);
+        walls.push(HalfSpace { normal, offset: min - out(2 * axis) });
+        walls.push(HalfSpace { normal: -normal, offset: -(max + out(2 * axis + 1)) });
+    }
+    walls
+}
+
+fn proved(bound: f64) -> Deviation {
+    Deviation { bound, evidence: Evidence::Proved }
+}
+
+/// Chords of lines crossed though they were cut finer and finer.
+fn tangled() -> TessellateError {
+    TessellateError::Cap { reason: "its edges come too close to each other".to_owned() }
+}
