@@ -61,16 +61,6 @@ fn fault(shape: &ClippedQuadric, span: Span, place: Span) -> Option<Diagnostic> 
         }
         _ => {}
     }
-    if let Some(apex) = shape.apex() {
-        let message = format!("the apex of this cone, {}, lies inside `within`", vector(apex));
-        let report = Diagnostic::error(Code::ConeApex, message)
-            .at(place, "must end beside the apex")
-            .note("at its apex a cone has no direction, and both of its halves meet there in one point")
-            .help(
-                "let `within` begin a thousandth of its size beside the apex, or write `[shape.NAME.cone]`",
-            );
-        return Some(report);
-    }
     // Few triangles tell whether there is anything.
     let detail = Detail {
         density: SurfaceDensity::Tolerance(shape.bounds().diagonal() / 50.0),

@@ -9,10 +9,12 @@ mod deviation;
 pub mod facts;
 mod joints;
 mod polygons;
+mod quadrics;
 
 pub use assertion::{Check, Fault};
 pub use deviation::measure_deviation;
 pub use joints::JointFacts;
+pub use quadrics::QuadricFacts;
 
 use indexmap::IndexMap;
 use serde::Serialize;
@@ -50,6 +52,9 @@ pub struct Report {
     /// The joints of each path of the document.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub paths: IndexMap<String, Vec<JointFacts>>,
+    /// What each quadric of the document is.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub quadrics: IndexMap<String, QuadricFacts>,
     /// Each assertion of the document that holds.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub assertions: Vec<Check>,
@@ -224,6 +229,7 @@ pub fn measure(
         shapes: facts,
         nodes,
         paths: joints::joints(model),
+        quadrics: quadrics::quadrics(model),
         assertions: Vec::new(),
     })
 }

@@ -82,3 +82,19 @@ fn the_tower_stands() {
     assert_eq!((shell.facts.components, shell.facts.boundary_loops), (1, 2), "{:?}", shell.facts);
     assert!(shell.deviation.measured.expect("asked for") <= shell.deviation.bound);
 }
+
+/// Both halves of a cone meet in one vertex, which the closed body has too; the report says what the equation makes.
+#[test]
+fn a_cone_keeps_its_apex() {
+    let text = "tolerance = 1e-3\n[shape.a.quadric]\nxx = 1\nyy = -1\nzz = 1\nx = -1\nconstant = 0.25\n\
+         within = { min = [-2, -1, -2], max = [2, 1, 2] }\ncaps = true";
+    let baked = bake(text);
+    let facts = &baked.only().facts;
+    assert!(facts.closed, "{facts:?}");
+    assert_near(facts.volume.expect("closed"), 2.0 * PI / 3.0, 2e-3);
+    let mesh = baked.glb.named("a");
+    assert!(mesh.positions.contains(&[0.5, 0.0, 0.0]));
+    let compiled = compile(text, &Options::default()).unwrap_or_else(|found| panic!("{found}"));
+    let report = compiled.report.expect("a report");
+    assert_eq!((report.quadrics["a"].surface, report.quadrics["a"].origin), ("cone", [0.5, 0.0, 0.0]));
+}

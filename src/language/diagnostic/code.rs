@@ -265,8 +265,6 @@ codes! {
     NoQuadric = "K0873";
     /// a surface goes on without end
     EndlessQuadric = "K0874";
-    /// the apex of a cone lies inside the box that cuts it
-    ConeApex = "K0875";
 
     /// a limit would be passed
     LimitPassed = "K0901";

@@ -321,9 +321,6 @@ examples! {
     EndlessQuadric: "All quadrics but ellipsoids go on without end. `within` says where the shape ends: at the sides of a box.",
         "[shape.a.quadric]\nxx = 1\nyy = 1\nzz = -1\nconstant = -1" =>
         "[shape.a.quadric]\nxx = 1\nyy = 1\nzz = -1\nconstant = -1\nwithin = { min = [-2, -2, -1], max = [2, 2, 1] }";
-    ConeApex: "A cone given by its equation goes through its apex to a second cone. The box that it is cut off by must leave the apex out; a cone with its tip is `[shape.NAME.cone]`.",
-        "[shape.a.quadric]\nxx = 1\nyy = -1\nzz = 1\nwithin = { min = [-1, 0, -1], max = [1, 1, 1] }" =>
-        "[shape.a.quadric]\nxx = 1\nyy = -1\nzz = 1\nwithin = { min = [-1, 0.001, -1], max = [1, 1, 1] }";
     LimitPassed: "The asset would have more triangles, vertices or bytes than [limits] or the machine's owner allows. Nothing was made: the count is known before memory is taken.",
         "[limits]\ntriangles = 100\n[shape.a.sphere]\nradius = 1" => "[shape.a]\nsegments = 8\n[shape.a.sphere]\nradius = 1\n[limits]\ntriangles = 200";
     NothingToShow: "A document needs a shape, and where it has nodes at least one of them must show one.",

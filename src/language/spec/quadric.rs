@@ -34,8 +34,8 @@ table! {
         z: Sp<f64> = 0.0;
         /// What is added.
         constant: Sp<f64> = 0.0;
-        /// The box that it ends at, `{ min = [x, y, z], max = [x, y, z] }`. Only an ellipsoid ends by itself. The apex
-        /// of a cone must lie outside.
+        /// The box that it ends at, `{ min = [x, y, z], max = [x, y, z] }`. Only an ellipsoid ends by itself. Of a cone
+        /// both halves are made, as far as the box holds them; they meet in the apex.
         within: Option<Within>;
         /// Whether it is closed where it ends, so that the result is the solid of all points inside of it and of `within`.
         caps: Sp<bool> = false;

@@ -67,6 +67,12 @@ impl QuadricKind {
         }
     }
 
+    /// Whether it has one center, and half lengths along all three axes.
+    #[must_use]
+    pub const fn has_center(self) -> bool {
+        matches!(self, Self::Ellipsoid | Self::OneSheet | Self::TwoSheets | Self::Cone)
+    }
+
     /// Whether it is flat everywhere.
     #[must_use]
     pub const fn is_flat(self) -> bool {

@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
+use super::convex::Polyhedron;
 use super::shell::Shell;
 use super::walled::add_wall;
-use super::{Job, Made, SHEETS};
+use super::{Job, Made, SHEETS, walls};
 use crate::geometry::field::quadric::{HalfSpace, QuadricForm, QuadricKind};
 use crate::geometry::mesh;
-use crate::geometry::mesh::weld::weld_near;
 use crate::geometry::number::Bounds;
 use crate::geometry::tessellate::Deviation;
 
@@ -59,23 +59,23 @@ impl Planes {
     }
 }
 
-/// The flat quadric inside the walls of a box.
+/// The flat quadric inside a box.
 pub(super) fn in_walls(
     form: &QuadricForm,
-    walls: &[HalfSpace],
+    bounds: &Bounds,
     negative: &dyn Fn(DVec3) -> bool,
     job: &Job,
 ) -> Made {
     let planes = Planes::new(form, negative);
+    let walls = walls(bounds);
     let mut shell = Shell::default();
     if job.closed {
         for body in &planes.bodies {
-            let all: Vec<HalfSpace> = body.iter().chain(walls).copied().collect();
-            add_polyhedron(&mut shell, &all, body.len());
+            add_polyhedron(&mut shell, bounds, body);
         }
     } else {
         for (index, plane) in planes.all.iter().enumerate() {
-            let corners = polygon(plane, walls);
+            let corners = polygon(plane, &walls);
             add_polygon(&mut shell, plane, &corners, mesh::index(index));
         }
     }
@@ -116,35 +116,23 @@ fn cut(corners: &[DVec3], wall: &HalfSpace) -> Vec<DVec3> {
     kept
 }
 
-/// Corners nearer to each other than this share of the size are one: more than walls are moved outward, less than
-/// single precision tells apart.
-const ONE_PLACE: f64 = 1e-8;
-
-/// Adds the faces of the common part of half spaces: the first `own` are planes of the quadric.
-fn add_polyhedron(shell: &mut Shell, all: &[HalfSpace], own: usize) {
-    let faces: Vec<Vec<DVec3>> = (0..all.len())
-        .map(|k| {
-            let others: Vec<HalfSpace> =
-                all.iter().enumerate().filter(|(other, _)| *other != k).map(|(_, half)| *half).collect();
-            polygon(&all[k], &others)
-        })
-        .collect();
-    // Corners are found once for each face; those of one place differ by rounding, or by what walls are moved outward.
-    let points: Vec<DVec3> = faces.iter().flatten().copied().collect();
-    let welded = weld_near(&points, ONE_PLACE * Bounds::of_points(points.iter().copied()).diagonal());
+/// Adds the faces of the part of a box inside half spaces, which are planes of the quadric.
+fn add_polyhedron(shell: &mut Shell, bounds: &Bounds, own: &[HalfSpace]) {
+    let mut body = Polyhedron::cuboid(bounds, SHEETS);
+    for (half, source) in own.iter().zip(0..) {
+        body.cut(half, bounds.diagonal(), source);
+    }
     let base = mesh::index(shell.points.len());
-    shell.points.extend(&welded.points);
-    let mut first = 0;
-    for (k, face) in faces.iter().enumerate() {
-        let mut corners: Vec<u32> =
-            (first..first + face.len()).map(|index| base + welded.map[index]).collect();
-        first += face.len();
-        corners.dedup();
-        if corners.len() > 1 && corners.first() == corners.last() {
-            corners.pop();
-        }
-        let source = if k < own { mesh::index(k) } else { SHEETS + mesh::index(k - own) };
-        add_wall(shell, &all[k], &fan(&corners), source);
+    shell.points.extend(&body.points);
+    let sides = walls(bounds);
+    for face in &body.faces {
+        let inward = if face.source < SHEETS {
+            &own[face.source as usize]
+        } else {
+            &sides[(face.source - SHEETS) as usize]
+        };
+        let corners: Vec<u32> = face.corners.iter().map(|corner| base + corner).collect();
+        add_wall(shell, inward, &fan(&corners), face.source);
     }
 }
 

@@ -2,8 +2,9 @@
 //!
 //! Promise: every vertex lies on the quadric to rounding, every line on the plane that cuts it; the bound is proved by
 //! the equation itself. What the cut only touches counts as inside: walls are moved outward by a billionth of their size.
-//! Not promised: a good mesh about the apex of a cone; see [`ClippedQuadric::apex`].
+//! The apex of a cone is a vertex of both of its halves; each triangle has a normal of its own there.
 
+mod convex;
 mod flat;
 mod judge;
 mod shell;
@@ -50,14 +51,6 @@ impl ClippedQuadric {
             || QuadricForm::anywhere(&self.quadric),
             |bounds| QuadricForm::new(&self.quadric, bounds.center(), bounds.diagonal() / 2.0),
         )
-    }
-
-    /// The apex of a cone, where it lies inside the box or on its sides but for a millionth of its size.
-    #[must_use]
-    pub fn apex(&self) -> Option<DVec3> {
-        let (form, bounds) = (self.form(), self.within?);
-        let beyond = (bounds.min - form.origin).max(form.origin - bounds.max).max_element();
-        (form.kind == QuadricKind::Cone && beyond <= 1e-6 * bounds.diagonal()).then_some(form.origin)
     }
 
     /// A box that holds the shape.
@@ -146,7 +139,7 @@ fn dressed(shape: &ClippedQuadric, job: &Job) -> Result<Made, TessellateError> {
     Ok(match shape.within {
         Some(bounds) if form.kind.is_flat() => {
             let negative = |point: DVec3| shape.quadric.value(point) < 0.0;
-            flat::in_walls(&form, &walls(&bounds), &negative, job)
+            flat::in_walls(&form, &bounds, &negative, job)
         }
         Some(bounds) => {
             let place = (bounds.center(), bounds.diagonal() / 2.0);

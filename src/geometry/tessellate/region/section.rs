@@ -150,13 +150,16 @@ impl Line for PlaneSection {
         let direction = self.normal.cross(pull);
         let length = direction.length();
         let straight = (middle, 0.0);
-        if length <= 1e-14 * pull.length() || chord == DVec3::ZERO {
+        let bent = self.quadric.bent(chord);
+        // A chord on a straight line of the quadric has its own direction as the conjugate one: nothing is left out.
+        let flat = bent.abs() <= 1e-13 * pull.length() * chord.length();
+        if flat || length <= 1e-14 * pull.length() || chord == DVec3::ZERO {
             return straight;
         }
         let direction = direction / length;
         let (a, b) = (self.quadric.bent(direction), self.quadric.gradient(middle).dot(direction));
         // At the middle the value is that of the chord alone: both ends lie on the conic.
-        let c = -self.quadric.bent(chord) / 4.0;
+        let c = -bent / 4.0;
         let found = roots(a, b, c).into_iter().min_by(|s, t| s.abs().total_cmp(&t.abs()));
         let Some(step) = found else { return straight };
         let top = middle + direction * step;
