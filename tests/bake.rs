@@ -22,6 +22,7 @@ mod refusals;
 mod shading;
 mod shapes;
 mod sweeps;
+mod triangles;
 mod wires;
 
 use kiln::compile::{Compiled, Options};

@@ -18,14 +18,14 @@ use crate::language::spec::{self, Basis, Border, Degrees, Directions, KnotRule, 
 use crate::model::Recipe;
 
 /// Diagnostics of one shape's joints; what is wrong with one is often wrong with all.
-const MOST_REPORTS: usize = 8;
+pub(super) const MOST_REPORTS: usize = 8;
 
 fn grid<T: Copy>(rows: &Rows<T>) -> Grid<T> {
     let items = rows.items().map(|item| item.value).collect();
     Grid::new(rows.columns(), items).expect("rows that were read are equally long and not empty")
 }
 
-fn recipe(surfaces: Vec<AnySurface>) -> Recipe {
+pub(super) fn recipe(surfaces: Vec<AnySurface>) -> Recipe {
     Recipe::Patches(Patchwork { surfaces, caps: Vec::new() })
 }
 
@@ -35,7 +35,7 @@ fn polynomial(surface: PolynomialSurface) -> AnySurface {
 
 impl Builder<'_> {
     /// Whether control points span a surface: reports those that are one point or stand on one line.
-    fn spans(&mut self, points: &[DVec3], place: Span) -> bool {
+    pub(super) fn spans(&mut self, points: &[DVec3], place: Span) -> bool {
         let Some(why) = flat(points) else { return true };
         let report =
             Diagnostic::error(Code::Degenerate, format!("the control points {why}: there is no surface"));
@@ -325,7 +325,7 @@ fn basis(patches: &spec::Patches) -> (Option<BasisMatrix>, usize) {
     }
 }
 
-fn continuity(spoken: SpokenContinuity) -> PatchContinuity {
+pub(super) fn continuity(spoken: SpokenContinuity) -> PatchContinuity {
     match spoken {
         SpokenContinuity::G0 => PatchContinuity::G0,
         SpokenContinuity::C0 => PatchContinuity::C0,
@@ -353,6 +353,11 @@ fn broken_seam(joint: &SurfaceJoint, wanted: PatchContinuity) -> String {
         SurfaceLine::Rim(_) => format!("{} and {}", line(one, first), line(other, second)),
         _ => format!("patches along {}", line(one, first)),
     };
+    broken_between(&lines, joint, wanted)
+}
+
+/// The same of lines that are named in words.
+pub(super) fn broken_between(lines: &str, joint: &SurfaceJoint, wanted: PatchContinuity) -> String {
     let found = &joint.smoothness;
     let place = format!("[{:.4}, {:.4}, {:.4}]", found.place.x, found.place.y, found.place.z);
     let why = if !found.holds(PatchContinuity::G1, 0.0) && wanted >= PatchContinuity::G1 {

@@ -101,6 +101,7 @@ impl Builder<'_> {
                 curves.map(|curves| here(Recipe::Wire(curves.concat())))
             }
             Kind::Patches(patches) => self.patches(patches, span).map(here),
+            Kind::BezierTriangles(triangles) => self.bezier_triangles(triangles).map(here),
             Kind::Hermite(surface) => self.hermite_surface(surface, span).map(here),
             Kind::BSpline(surface) => self.b_spline_surface(surface, span).map(here),
             Kind::Nurbs(surface) => self.nurbs_surface(surface, span).map(here),

@@ -20,6 +20,7 @@ mod second;
 mod swept;
 pub mod tensor;
 mod translational;
+pub mod triangle;
 
 pub use any::AnySurface;
 pub use extruded::ExtrudedSurface;

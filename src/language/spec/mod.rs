@@ -2,6 +2,7 @@
 
 mod arc;
 mod assertion;
+mod bezier_triangle;
 mod bspline;
 mod check;
 mod combine;
@@ -56,6 +57,7 @@ mod wire;
 pub use crate::language::suggest::closest;
 pub use arc::{Arc, CenterArc};
 pub use assertion::{Assertion, Demand, Expected};
+pub use bezier_triangle::BezierTriangles;
 pub use bspline::{BSpline, Nurbs};
 pub use combine::{Array, Copy, Group, Mirror, Plane};
 pub use conic::{Conic, ConicForm, Hyperbola, Parabola};

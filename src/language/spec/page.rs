@@ -87,6 +87,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 5] = [
             "polygon",
             "wire",
             "patches",
+            "bezier triangles",
             "hermite surface",
             "b-spline surface",
             "nurbs surface",

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 use serde_json::Value as Json;
 
+use crate::language::spec::bezier_triangle::BezierTriangles;
 use crate::language::spec::check::Check;
 use crate::language::spec::combine::{Array, Copy, Group, Mirror};
 use crate::language::spec::construct::{choices, kinds, table};
@@ -134,6 +135,8 @@ kinds! {
         Wire(Wire) = "wire";
         /// Curved patches by control points.
         Patches(Patches) = "patches";
+        /// Curved triangles by control points.
+        BezierTriangles(BezierTriangles) = "bezier-triangles";
         /// A surface through points with given tangents.
         Hermite(HermiteSurface) = "hermite";
         /// A B-spline surface.
