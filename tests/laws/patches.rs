@@ -168,6 +168,29 @@ fn second_derivatives_lie_in_their_ranges_and_the_ranges_close_in() {
 }
 
 /// At its knots a loft is its profiles, at the parameters that it gives them.
+/// What is asked for together is what is asked for one by one.
+#[test]
+fn lattices_are_their_places() {
+    let mut dice = Dice::new(23);
+    for (name, surface) in surfaces() {
+        let cells: Vec<_> = (0..5).map(|_| rectangle(&surface, &mut dice)).collect();
+        let (u, v): (Vec<_>, Vec<_>) = cells.into_iter().unzip();
+        let low = |intervals: &[(f64, f64)]| -> Vec<(f64, Side)> {
+            intervals.iter().map(|(low, _)| (*low, AFTER)).collect()
+        };
+        let jets = surface.lattice(&low(&u), &low(&v));
+        let ranges = surface.second_ranges(&u, &v).unwrap();
+        assert_eq!((jets.len(), ranges.len()), (25, 25), "{name}");
+        for (row, v) in v.iter().enumerate() {
+            for (column, u) in u.iter().enumerate() {
+                let number = 5 * row + column;
+                assert_eq!(jets[number], surface.sided((u.0, AFTER), (v.0, AFTER)), "{name}");
+                assert_eq!(Some(ranges[number]), surface.second_range(*u, *v), "{name}");
+            }
+        }
+    }
+}
+
 #[test]
 fn lofts_go_through_their_profiles() {
     use kiln::geometry::curve::Curve as _;

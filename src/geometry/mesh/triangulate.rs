@@ -17,6 +17,7 @@ mod bend;
 mod constrained;
 mod corners;
 mod ears;
+mod round;
 mod tolerant;
 
 use glam::{DVec2, DVec3};
@@ -271,7 +272,10 @@ impl Polygon {
             split.sort_unstable();
             return Some(split);
         }
-        ears::cut(self).or_else(|| constrained::triangulate(self)).map(|triangles| self.oriented(triangles))
+        ears::cut(self)
+            .or_else(|| round::cut(self))
+            .or_else(|| constrained::triangulate(self))
+            .map(|triangles| self.oriented(triangles))
     }
 
     /// Of two ways to cut a polygon whose edges cross, the one that turns triangles over by less.

@@ -63,6 +63,14 @@ impl Surface for AnySurface {
         each_kind!(self, surface => surface.second_range(u, v))
     }
 
+    fn lattice(&self, u: &[(f64, Side)], v: &[(f64, Side)]) -> Vec<SurfaceJet> {
+        each_kind!(self, surface => surface.lattice(u, v))
+    }
+
+    fn second_ranges(&self, u: &[(f64, f64)], v: &[(f64, f64)]) -> Option<Vec<SecondRange>> {
+        each_kind!(self, surface => surface.second_ranges(u, v))
+    }
+
     fn joints_u(&self) -> Vec<f64> {
         each_kind!(self, surface => surface.joints_u())
     }

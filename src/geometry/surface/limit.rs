@@ -16,6 +16,14 @@ pub(super) fn normal(
     second: &SecondJet,
     (side_u, side_v): (Side, Side),
 ) -> Option<DVec3> {
+    // The squares settle almost every place, without a root.
+    let reach = 3.0 * (second.uu.length_squared() + second.uv.length_squared() + second.vv.length_squared());
+    let (least, across) = (4.0 * VANISHES * VANISHES * reach, du.cross(dv));
+    let (square_u, square_v) = (du.length_squared(), dv.length_squared());
+    let spread = across.length_squared() > VANISHES * VANISHES * square_u * square_v;
+    if square_u > least && square_v > least && spread {
+        return across.try_normalize();
+    }
     let into = |side: Side, change: DVec3| if side == Side::After { change } else { -change };
     let reach = second.uu.length() + second.uv.length() + second.vv.length();
     let lasting = |tangent: DVec3, changes: [DVec3; 2]| {

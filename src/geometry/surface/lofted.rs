@@ -1,5 +1,7 @@
 //! Surfaces through a row of curves.
 
+mod range;
+
 use glam::DVec3;
 
 use super::{SecondJet, SecondRange, Surface, SurfaceJet, limit};
@@ -7,7 +9,7 @@ use crate::geometry::curve::{
     AnyCurve, BezierSpline, Curve, Domain, Jet, Side, SplineEnd, SplineError, interpolate,
     interpolate_closed, interpolate_with, jumps,
 };
-use crate::geometry::number::Bounds;
+use range::{Piece, Stretch, Weight, union};
 
 /// How a surface goes from curve to curve.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,121 +95,97 @@ impl LoftedSurface {
         &self.curves[..self.through]
     }
 
-    /// Weight of each curve with derivatives by v, for those that matter.
-    fn weights(&self, (v, side): (f64, Side)) -> impl Iterator<Item = (usize, [f64; 3])> {
-        self.weights.iter().enumerate().flat_map(move |(group, spline)| {
+    /// The weights that matter at a place: numbers of curves, weights with derivatives by v.
+    fn weights(&self, (v, side): (f64, Side)) -> Vec<(usize, [f64; 3])> {
+        let mut weights = Vec::with_capacity(self.curves.len().min(MANY));
+        for (group, spline) in self.weights.iter().enumerate() {
             let Jet { point, first, second } = spline.evaluate(v, side);
-            (0..3).map(move |k| (3 * group + k, [point[k], first[k], second[k]]))
-        })
+            for k in 0..3 {
+                let weight = [point[k], first[k], second[k]];
+                let number = 3 * group + k;
+                if number < self.curves.len() && size_of_all(&weight) >= NOTHING {
+                    weights.push((number, weight));
+                }
+            }
+        }
+        weights
     }
 
-    fn both(&self, u: (f64, Side), v: (f64, Side)) -> (SurfaceJet, SecondJet) {
+    /// The jet, but for its normal, and the second derivatives by the weights of curves whose jets are given.
+    fn weighted(weights: &[(usize, [f64; 3])], curve: impl Fn(usize) -> Jet) -> (SurfaceJet, SecondJet) {
         let zero = DVec3::ZERO;
         let mut jet = SurfaceJet { point: zero, du: zero, dv: zero, normal: DVec3::Y };
         let mut second = SecondJet { uu: zero, uv: zero, vv: zero };
-        for (k, [w, w1, w2]) in self.weights(v) {
-            if k >= self.curves.len() || (w.abs() + w1.abs() + w2.abs()) < NOTHING {
-                continue;
-            }
-            let curve = self.curves[k].evaluate(u.0, u.1);
-            jet.point += curve.point * w;
-            jet.du += curve.first * w;
-            jet.dv += curve.point * w1;
-            second.uu += curve.second * w;
-            second.uv += curve.first * w1;
-            second.vv += curve.point * w2;
+        for (k, [w, w1, w2]) in weights {
+            let curve = curve(*k);
+            jet.point += curve.point * *w;
+            jet.du += curve.first * *w;
+            jet.dv += curve.point * *w1;
+            second.uu += curve.second * *w;
+            second.uv += curve.first * *w1;
+            second.vv += curve.point * *w2;
         }
         (jet, second)
     }
-}
 
-impl LoftedSurface {
-    /// Ranges where every weight is one cubic. With u = m + d around the middle of a range of half width h, and each
-    /// curve's second derivatives within r of a center c, both by coordinates:
-    ///
-    /// - `P_uu = sum w C''` lies within `sum |w| r` of `sum w c`;
-    /// - `P_uv = sum w' C'` within `h (|sum w' c| + sum |w'| r)` of `sum w' C'(m)`;
-    /// - `P_vv = sum w'' C` within `h |sum w'' C'(m)| + h^2 / 2 (|sum w'' c| + sum |w''| r)` of `sum w'' C(m)`.
-    ///
-    /// Sums are taken before sizes, so what cancels does not count; over v they are polynomials.
-    fn range_between_knots(&self, u: (f64, f64), v: (f64, f64)) -> Option<SecondRange> {
-        let (middle, half) = ((u.0 + u.1) / 2.0, (u.1 - u.0) / 2.0);
+    fn both(&self, u: (f64, Side), v: (f64, Side)) -> (SurfaceJet, SecondJet) {
+        Self::weighted(&self.weights(v), |k| self.curves[k].evaluate(u.0, u.1))
+    }
+
+    fn with_normal(
+        &self,
+        (mut jet, second): (SurfaceJet, SecondJet),
+        u: (f64, Side),
+        v: (f64, Side),
+    ) -> SurfaceJet {
+        let span = self.domain_v().span();
+        let by_unit = SecondJet { uv: second.uv * span, vv: second.vv * (span * span), ..second };
+        jet.normal = limit::normal((jet.du, jet.dv * span), &by_unit, (u.1, v.1)).unwrap_or_else(|| {
+            let weights = self.weights(v).into_iter().filter(|(k, _)| *k < self.through);
+            let nearest = weights.max_by(|a, b| a.1[0].total_cmp(&b.1[0])).map_or(0, |(k, _)| k);
+            let along = self.curves[nearest].direction(u.0, u.1);
+            along.cross(jet.dv).normalize_or(DVec3::Y)
+        });
+        jet
+    }
+
+    /// Which curves are among the named ones.
+    fn which(&self, named: impl Iterator<Item = usize>) -> Vec<bool> {
+        let mut among = vec![false; self.curves.len()];
+        named.for_each(|k| among[k] = true);
+        among
+    }
+
+    /// The pieces of an interval of v over which every weight is one cubic.
+    fn pieces(&self, v: (f64, f64)) -> Vec<Piece> {
+        let mut stops = vec![v.0];
+        stops.extend(self.weights[0].breaks().into_iter().filter(|knot| *knot > v.0 && *knot < v.1));
+        stops.push(v.1);
+        stops.windows(2).map(|ends| self.piece((ends[0], ends[1]))).collect()
+    }
+
+    fn piece(&self, v: (f64, f64)) -> Piece {
         let step = v.1 - v.0;
-        let mut bends = Sums::default();
-        let mut speeds = Sums::default();
-        let mut places = Sums::default();
-        let (mut loose, mut loose_1, mut loose_2) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
-        let ends = self.weights((v.0, Side::After)).zip(self.weights((v.1, Side::Before)));
-        for ((k, start), (_, end)) in ends {
-            let size: f64 = start.iter().chain(&end).map(|weight| weight.abs()).sum();
-            let Some(curve) = self.curves.get(k).filter(|_| size >= NOTHING) else { continue };
-            let range = curve.second_range(u.0, u.1)?;
-            let jet = curve.evaluate(middle, Side::After);
-            bends.add(range.center(), &start, &end);
-            speeds.add(jet.first, &start, &end);
-            places.add(jet.point, &start, &end);
-            let radius = (range.max - range.min) / 2.0;
-            let [most, most_1, most_2] = greatest(&start, &end, step);
-            loose += radius * most;
-            loose_1 += radius * most_1;
-            loose_2 += radius * most_2;
+        let mut weights = Vec::with_capacity(self.curves.len().min(MANY));
+        for (group, spline) in self.weights.iter().enumerate() {
+            let (start, end) = (spline.evaluate(v.0, Side::After), spline.evaluate(v.1, Side::Before));
+            for k in 0..3 {
+                let of = |jet: &Jet| [jet.point[k], jet.first[k], jet.second[k]];
+                let (start, end, number) = (of(&start), of(&end), 3 * group + k);
+                if number < self.curves.len() && size_of_all(&start) + size_of_all(&end) >= NOTHING {
+                    weights.push(Weight::new(number, (start, end), step));
+                }
+            }
         }
-        let bend_1 = size(&bends.first(step)) + loose_1;
-        let bend_2 = size(&bends.second()) + loose_2;
-        Some(SecondRange {
-            uu: widened(&bends.value(step), loose),
-            uv: widened(&speeds.first(step), bend_1 * half),
-            vv: widened(&places.second(), size(&speeds.second()) * half + bend_2 * (half * half / 2.0)),
-        })
+        Piece::new(step, weights)
     }
 }
 
-/// Sums of vectors by the weights, and by their derivatives, at both ends of a piece where weights are cubic.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    start: [DVec3; 3],
-    end: [DVec3; 3],
-}
+/// Curves whose weights matter at one place, however many there are.
+const MANY: usize = 64;
 
-impl Sums {
-    fn add(&mut self, vector: DVec3, start: &[f64; 3], end: &[f64; 3]) {
-        for k in 0..3 {
-            self.start[k] += vector * start[k];
-            self.end[k] += vector * end[k];
-        }
-    }
-
-    /// All values between the ends: those of a chord, and what a bounded second derivative adds.
-    fn value(&self, step: f64) -> Bounds {
-        let bend = self.start[2].abs().max(self.end[2].abs());
-        widened(&Bounds::of_points([self.start[0], self.end[0]]), bend * (step * step / 8.0))
-    }
-
-    /// The same of the first derivative, whose own second one is the same all over.
-    fn first(&self, step: f64) -> Bounds {
-        let change = (self.end[2] - self.start[2]).abs();
-        widened(&Bounds::of_points([self.start[1], self.end[1]]), change * (step / 8.0))
-    }
-
-    /// The same of the second derivative, which is linear.
-    fn second(&self) -> Bounds {
-        Bounds::of_points([self.start[2], self.end[2]])
-    }
-}
-
-/// The greatest sizes of one weight and its derivatives between two ends.
-fn greatest(start: &[f64; 3], end: &[f64; 3], step: f64) -> [f64; 3] {
-    let most = |k: usize| start[k].abs().max(end[k].abs());
-    [most(0) + most(2) * step * step / 8.0, most(1) + (end[2] - start[2]).abs() * step / 8.0, most(2)]
-}
-
-/// The greatest sizes of coordinates in a box.
-fn size(range: &Bounds) -> DVec3 {
-    range.min.abs().max(range.max.abs())
-}
-
-fn widened(range: &Bounds, by: DVec3) -> Bounds {
-    Bounds { min: range.min - by, max: range.max + by }
+fn size_of_all(weight: &[f64; 3]) -> f64 {
+    weight.iter().map(|weight| weight.abs()).sum()
 }
 
 /// The interpolation that gives the weights of curves.
@@ -297,16 +275,7 @@ impl Surface for LoftedSurface {
     }
 
     fn sided(&self, u: (f64, Side), v: (f64, Side)) -> SurfaceJet {
-        let (mut jet, second) = self.both(u, v);
-        let span = self.domain_v().span();
-        let by_unit = SecondJet { uv: second.uv * span, vv: second.vv * (span * span), ..second };
-        jet.normal = limit::normal((jet.du, jet.dv * span), &by_unit, (u.1, v.1)).unwrap_or_else(|| {
-            let weights = self.weights(v).take(self.through);
-            let nearest = weights.max_by(|a, b| a.1[0].total_cmp(&b.1[0])).map_or(0, |(k, _)| k);
-            let along = self.curves[nearest].direction(u.0, u.1);
-            along.cross(jet.dv).normalize_or(DVec3::Y)
-        });
-        jet
+        self.with_normal(self.both(u, v), u, v)
     }
 
     fn second(&self, u: (f64, Side), v: (f64, Side)) -> SecondJet {
@@ -314,18 +283,50 @@ impl Surface for LoftedSurface {
     }
 
     fn second_range(&self, u: (f64, f64), v: (f64, f64)) -> Option<SecondRange> {
-        let mut stops = vec![v.0];
-        stops.extend(self.weights[0].breaks().into_iter().filter(|knot| *knot > v.0 && *knot < v.1));
-        stops.push(v.1);
-        let pieces = stops.windows(2).map(|piece| self.range_between_knots(u, (piece[0], piece[1])));
-        pieces.reduce(|one, other| {
-            let (one, other) = (one?, other?);
-            Some(SecondRange {
-                uu: one.uu.union(other.uu),
-                uv: one.uv.union(other.uv),
-                vv: one.vv.union(other.vv),
-            })
-        })?
+        Some(self.second_ranges(&[u], &[v])?[0])
+    }
+
+    fn lattice(&self, u: &[(f64, Side)], v: &[(f64, Side)]) -> Vec<SurfaceJet> {
+        let rows: Vec<Vec<(usize, [f64; 3])>> = v.iter().map(|v| self.weights(*v)).collect();
+        let matter = self.which(rows.iter().flatten().map(|(k, _)| *k));
+        let unknown = Jet { point: DVec3::ZERO, first: DVec3::ZERO, second: DVec3::ZERO };
+        let at = |(u, side): (f64, Side)| {
+            let curves = self.curves.iter().zip(&matter);
+            curves.map(move |(curve, matters)| if *matters { curve.evaluate(u, side) } else { unknown })
+        };
+        let jets: Vec<Jet> = u.iter().flat_map(|u| at(*u)).collect();
+        let mut places = Vec::with_capacity(u.len() * v.len());
+        for (weights, v) in rows.iter().zip(v) {
+            for (jets, u) in jets.chunks(self.curves.len()).zip(u) {
+                places.push(self.with_normal(Self::weighted(weights, |k| jets[k]), *u, *v));
+            }
+        }
+        places
+    }
+
+    fn second_ranges(&self, u: &[(f64, f64)], v: &[(f64, f64)]) -> Option<Vec<SecondRange>> {
+        let rows: Vec<Vec<Piece>> = v.iter().map(|v| self.pieces(*v)).collect();
+        let matter = self
+            .which(rows.iter().flatten().flat_map(|piece| piece.weights.iter().map(|weight| weight.curve)));
+        let on = |u: (f64, f64)| {
+            let curves = self.curves.iter().zip(&matter);
+            curves.map(
+                move |(curve, matters)| {
+                    if *matters { Stretch::new(curve, u) } else { Some(Stretch::default()) }
+                },
+            )
+        };
+        let stretches: Option<Vec<Stretch>> = u.iter().flat_map(|u| on(*u)).collect();
+        let stretches = stretches?;
+        let mut ranges = Vec::with_capacity(u.len() * v.len());
+        for pieces in &rows {
+            for (stretches, u) in stretches.chunks(self.curves.len()).zip(u) {
+                let range = |piece: &Piece| piece.range((u.1 - u.0) / 2.0, |k| &stretches[k]);
+                let first = range(&pieces[0]);
+                ranges.push(pieces[1..].iter().fold(first, |sum, piece| union(sum, range(piece))));
+            }
+        }
+        Some(ranges)
     }
 
     fn joints_u(&self) -> Vec<f64> {

@@ -87,6 +87,18 @@ pub trait Surface: Send + Sync {
         None
     }
 
+    /// Jets wherever one of the places `u` crosses one of `v`, row by row: first all `u` at the first `v`. Where the cost
+    /// of a surface lies in its lines, the places on a line share it.
+    fn lattice(&self, u: &[(f64, Side)], v: &[(f64, Side)]) -> Vec<SurfaceJet> {
+        v.iter().flat_map(|v| u.iter().map(|u| self.sided(*u, *v))).collect()
+    }
+
+    /// [`Surface::second_range`] of all rectangles between intervals `u` and intervals `v`, row by row in the same way;
+    /// none where one of them has none.
+    fn second_ranges(&self, u: &[(f64, f64)], v: &[(f64, f64)]) -> Option<Vec<SecondRange>> {
+        v.iter().flat_map(|v| u.iter().map(|u| self.second_range(*u, *v))).collect()
+    }
+
     /// Values of u strictly inside the domain, increasing, where tangents may jump: lines of u = constant that a
     /// mesh must keep as edges.
     fn joints_u(&self) -> Vec<f64> {

@@ -66,6 +66,12 @@ impl Deviation {
     /// A mesh that is the shape.
     pub const NONE: Self = Self { bound: 0.0, evidence: Evidence::Exact };
 
+    /// A bound in metres with its evidence; a bound of zero is exact.
+    #[must_use]
+    pub fn new(bound: f64, evidence: Evidence) -> Self {
+        Self { bound, evidence: if bound == 0.0 { Evidence::Exact } else { evidence } }
+    }
+
     /// The deviation of two meshes together.
     #[must_use]
     pub fn union(self, other: Self) -> Self {

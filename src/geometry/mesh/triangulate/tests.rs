@@ -482,3 +482,45 @@ fn small_crossings_do_small_harm() {
         }
     }
 }
+
+/// Corners on one circle, evenly or not, from any start and either way around: no sliver but those that the corners ask
+/// for, nothing turned over, the whole area.
+#[test]
+fn round_polygons_are_cut_by_halves() {
+    for count in [5_u32, 6, 7, 12, 33, 128] {
+        for shift in [0.0, 0.37] {
+            for turned in [1.0, -1.0] {
+                let angle = |k: u32| {
+                    let part = f64::from(k) / f64::from(count);
+                    turned * 360.0 * (part + shift + 0.05 * part * (1.0 - part))
+                };
+                let ring: Vec<DVec2> = (0..count)
+                    .map(|k| {
+                        let (sin, cos) = crate::geometry::number::sin_cos_degrees(angle(k));
+                        DVec2::new(3.0 + 2.0 * cos, -1.0 + 2.0 * sin)
+                    })
+                    .collect();
+                let triangles = triangulate(&[&ring]).unwrap();
+                assert_eq!(triangles.len(), count as usize - 2);
+                let area = |[a, b, c]: [u32; 3]| {
+                    (ring[b as usize] - ring[a as usize]).perp_dot(ring[c as usize] - ring[a as usize])
+                };
+                assert!(triangles.iter().all(|triangle| area(*triangle) * turned > 0.0));
+                let sum: f64 = triangles.iter().map(|triangle| area(*triangle)).sum();
+                assert!((sum - ring_area(&ring)).abs() < 1e-12 * sum.abs());
+            }
+        }
+    }
+}
+
+/// A ring that runs twice around a circle is no polygon, however round.
+#[test]
+fn twice_around_a_circle_is_refused() {
+    let ring: Vec<DVec2> = (0..9)
+        .map(|k| {
+            let (sin, cos) = crate::geometry::number::sin_cos_degrees(80.0 * f64::from(k) + 1.0);
+            DVec2::new(cos, sin)
+        })
+        .collect();
+    assert!(matches!(triangulate(&[&ring]), Err(TriangulateError::Crossing { .. })));
+}

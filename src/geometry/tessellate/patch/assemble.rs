@@ -53,10 +53,7 @@ impl<'a, 'b> Assembly<'a, 'b> {
         for (block, piece) in net.layout.blocks.iter().zip(&net.pieces) {
             first.push(count);
             count += index(piece.corners.len());
-            normals.extend(piece.corners.iter().map(|corner| {
-                let normal = block.jet(corner.u, corner.v).normal;
-                if block.flipped { -normal } else { normal }
-            }));
+            normals.extend(piece.normals.iter().map(|normal| if block.flipped { -*normal } else { *normal }));
         }
         Self { net, detail, mesh, first, parent: (0..count).collect(), normals }
     }
@@ -114,18 +111,19 @@ impl<'a, 'b> Assembly<'a, 'b> {
     }
 
     fn triangles(&mut self) {
-        let mut made: Vec<Vec<u32>> = vec![Vec::new(); self.net.points.len()];
+        let mut made = Made { newest: vec![NONE; self.net.points.len()], older: Vec::new() };
         for (number, (block, piece)) in self.net.layout.blocks.iter().zip(&self.net.pieces).enumerate() {
-            let mut vertices = vec![u32::MAX; piece.corners.len()];
+            let mut vertices = vec![NONE; piece.corners.len()];
+            self.mesh.triangles.reserve(piece.triangles.len());
             for triangle in &piece.triangles {
                 let corners = triangle.map(|corner| {
                     let slot = vertices[corner as usize];
-                    if slot != u32::MAX {
+                    if slot != NONE {
                         return VertexIndex(slot);
                     }
                     let normal = self.normals[(self.first[number] + corner) as usize];
                     let vertex = vertex(block, &piece.corners[corner as usize], normal, self.detail.uv);
-                    let found = self.find_or_push(vertex, &mut made);
+                    let found = made.find_or_push(&mut self.mesh.vertices, vertex);
                     vertices[corner as usize] = found;
                     VertexIndex(found)
                 });
@@ -134,24 +132,39 @@ impl<'a, 'b> Assembly<'a, 'b> {
             }
         }
     }
+}
 
-    /// The vertex on the same point that looks the same, or a new one. A point of a pole may have very many:
-    /// there only its first and its last are looked at.
-    fn find_or_push(&mut self, vertex: Vertex, made: &mut [Vec<u32>]) -> u32 {
+/// No vertex.
+const NONE: u32 = u32::MAX;
+
+/// The vertices on each point, from the newest to the oldest.
+struct Made {
+    /// For each point.
+    newest: Vec<u32>,
+    /// For each vertex the one before it on the same point.
+    older: Vec<u32>,
+}
+
+impl Made {
+    /// The vertex on the same point that looks the same, or a new one. A point of a pole may have very many: there only
+    /// the newest are looked at.
+    fn find_or_push(&mut self, vertices: &mut Vec<Vertex>, vertex: Vertex) -> u32 {
         const ALIKE: f64 = 1e-9;
-        const LOOKED_AT: usize = 8;
-        let known = &mut made[vertex.point.subscript()];
-        let near = known.iter().take(LOOKED_AT).chain(known.last());
-        let same = near.copied().find(|other| {
-            let other = &self.mesh.vertices[*other as usize];
-            other.uv == vertex.uv && other.normal.distance(vertex.normal) <= ALIKE
-        });
-        same.unwrap_or_else(|| {
-            self.mesh.vertices.push(vertex);
-            let new = index(self.mesh.vertices.len() - 1);
-            known.push(new);
-            new
-        })
+        const LOOKED_AT: usize = 9;
+        let newest = &mut self.newest[vertex.point.subscript()];
+        let mut known = *newest;
+        for _ in 0..LOOKED_AT {
+            let Some(other) = vertices.get(known as usize) else { break };
+            if other.uv == vertex.uv && other.normal.distance(vertex.normal) <= ALIKE {
+                return known;
+            }
+            known = self.older[known as usize];
+        }
+        let new = index(vertices.len());
+        vertices.push(vertex);
+        self.older.push(*newest);
+        *newest = new;
+        new
     }
 }
 
@@ -267,14 +280,12 @@ fn keep_used_points(mesh: &mut Mesh) {
 
 /// Whether a closed mesh shows its inside.
 fn looks_inward(mesh: &Mesh) -> bool {
-    let corner = |corner: usize| mesh.vertices[mesh.triangles[corner / 3][corner % 3].subscript()].point.0;
-    let measured = crate::geometry::mesh::topology::measure(mesh.triangles.len(), mesh.points.len(), corner);
-    if !measured.is_ok_and(|topology| topology.closed) {
-        return false;
-    }
     let origin = mesh.points.first().copied().unwrap_or(DVec3::ZERO);
     let place =
         |vertex: &VertexIndex| mesh.points[mesh.vertices[vertex.subscript()].point.subscript()] - origin;
     let six: f64 = mesh.triangles.iter().map(|[a, b, c]| place(a).dot(place(b).cross(place(c)))).sum();
-    six < 0.0
+    let corner = |corner: usize| mesh.vertices[mesh.triangles[corner / 3][corner % 3].subscript()].point.0;
+    let closed = || crate::geometry::mesh::topology::measure(mesh.triangles.len(), mesh.points.len(), corner);
+    // What is cheap is asked first.
+    six < 0.0 && closed().is_ok_and(|topology| topology.closed)
 }

@@ -23,7 +23,7 @@ use glam::DVec3;
 use super::layout::Block;
 use super::rows::{Corner, Free};
 use crate::geometry::number::{Bounds, hypot};
-use crate::geometry::surface::{SecondRange, Surface as _};
+use crate::geometry::surface::{SecondRange, Surface as _, SurfaceJet};
 use crate::geometry::tessellate::Evidence;
 
 /// The verdict on a triangle.
@@ -60,15 +60,21 @@ impl Verdict {
     }
 }
 
-/// Judges a triangle by its corners' parameters and places.
-pub(super) fn judge(block: &Block<'_>, corners: [Corner; 3], places: [DVec3; 3], wanted: f64) -> Verdict {
+/// Judges a triangle by its corners, the surface's normals there, and their places.
+pub(super) fn judge(
+    block: &Block<'_>,
+    (corners, normals): ([Corner; 3], [DVec3; 3]),
+    places: [DVec3; 3],
+    wanted: f64,
+) -> Verdict {
     let normal = (places[1] - places[0]).cross(places[2] - places[0]).normalize_or_zero();
     let proved = prove(block, &corners, normal);
-    if proved <= wanted {
+    if proved <= wanted && proved.is_finite() {
         // What the samples would say is no more.
         return Verdict { proved, sampled: proved, sides: [0.0; 3] };
     }
-    let (sampled, sides) = sample(block, &corners, &places, normal);
+    let tilted = normals.iter().any(|own| own.dot(normal) <= 0.0);
+    let (sampled, sides) = sample(block, &corners, &places, (normal, tilted));
     Verdict { proved, sampled, sides }
 }
 
@@ -93,7 +99,12 @@ fn between(a: &Corner, b: &Corner, part: f64) -> (f64, f64) {
     (u, v)
 }
 
-fn sample(block: &Block<'_>, corners: &[Corner; 3], places: &[DVec3; 3], normal: DVec3) -> (f64, [f64; 3]) {
+fn sample(
+    block: &Block<'_>,
+    corners: &[Corner; 3],
+    places: &[DVec3; 3],
+    (normal, tilted): (DVec3, bool),
+) -> (f64, [f64; 3]) {
     let mut least = f64::INFINITY;
     let mut away = |(u, v): (f64, f64), place: DVec3| {
         let jet = block.jet(u, v);
@@ -111,7 +122,6 @@ fn sample(block: &Block<'_>, corners: &[Corner; 3], places: &[DVec3; 3], normal:
         (near + far) / 1.5
     });
     let center = away(centroid(corners), (places[0] + places[1] + places[2]) / 3.0).abs();
-    let tilted = corners.iter().any(|corner| block.jet(corner.u, corner.v).normal.dot(normal) <= 0.0);
     if least < FOLDED || tilted {
         return (f64::INFINITY, [0.0; 3]);
     }
@@ -159,20 +169,47 @@ fn prove(block: &Block<'_>, corners: &[Corner; 3], normal: DVec3) -> f64 {
     };
     let (u, v) = (extent(corners.map(|corner| corner.u)), extent(corners.map(|corner| corner.v)));
     let (h, k) = (u.1 - u.0, v.1 - v.0);
-    let wide = |(low, high): (f64, f64), step: f64, within: (f64, f64)| {
-        ((low - WIDER * step).max(within.0), (high + WIDER * step).min(within.1))
-    };
-    let Some(range) = block.surface.second_range(wide(u, h, block.u), wide(v, k, block.v)) else {
+    let Some(range) = block.surface.second_range(widened(u, block.u), widened(v, block.v)) else {
         return f64::INFINITY;
     };
-    let pole = corners.iter().any(|corner| corner.free != Free::Neither);
-    let (height, shift) =
-        if pole { at_pole(&range, normal, (h, k)) } else { plain(&range, normal, corners, (h, k)) };
+    if corners.iter().any(|corner| corner.free != Free::Neither) {
+        let (height, shift) = at_pole(&range, normal, (h, k));
+        return hypot(height, shift);
+    }
+    let middle = || block.jet((u.0 + u.1) / 2.0, (v.0 + v.1) / 2.0);
+    bound(&range, middle, (normal, steps(corners)), (h, k), 0.0)
+}
+
+/// An interval of parameters as it is widened for the proof.
+pub(super) fn widened((low, high): (f64, f64), within: (f64, f64)) -> (f64, f64) {
+    let more = WIDER * (high - low);
+    ((low - more).max(within.0), (high + more).min(within.1))
+}
+
+/// The sides of a triangle as steps of the parameters; side k lies opposite of corner k.
+pub(super) fn steps(corners: &[Corner; 3]) -> [(f64, f64); 3] {
+    [0, 1, 2].map(|k| {
+        let (a, b) = (&corners[(k + 1) % 3], &corners[(k + 2) % 3]);
+        (b.u - a.u, b.v - a.v)
+    })
+}
+
+/// A proved bound for a triangle by its normal and its steps: from the range over its widened rectangle of parameters,
+/// which is h wide and k high before it is widened, and the jet in the middle of that. A bound no greater than `enough`
+/// need not be the least.
+pub(super) fn bound(
+    range: &SecondRange,
+    middle: impl FnOnce() -> SurfaceJet,
+    (normal, steps): (DVec3, [(f64, f64); 3]),
+    (h, k): (f64, f64),
+    enough: f64,
+) -> f64 {
+    let (height, shift) = plain(range, normal, steps, (h, k));
     let simple = hypot(height, shift);
-    if pole {
+    if simple <= enough {
         return simple;
     }
-    let middle = block.jet((u.0 + u.1) / 2.0, (v.0 + v.1) / 2.0);
+    let middle = middle();
     let (across, up) = (middle.du * h, middle.dv * k);
     // How the tangents change over the widened range, from its middle.
     let size = |range: &Bounds| range.min.abs().max(range.max.abs()).length();
@@ -196,13 +233,9 @@ fn prove(block: &Block<'_>, corners: &[Corner; 3], normal: DVec3) -> f64 {
 }
 
 /// Height and shift of the difference where both parameters are linear on the triangle.
-fn plain(range: &SecondRange, normal: DVec3, corners: &[Corner; 3], (h, k): (f64, f64)) -> (f64, f64) {
+fn plain(range: &SecondRange, normal: DVec3, steps: [(f64, f64); 3], (h, k): (f64, f64)) -> (f64, f64) {
     let ((uu, ruu), (uv, ruv), (vv, rvv)) =
         (along(&range.uu, normal), along(&range.uv, normal), along(&range.vv, normal));
-    let steps = [0, 1, 2].map(|k| {
-        let (a, b) = (&corners[(k + 1) % 3], &corners[(k + 2) % 3]);
-        (b.u - a.u, b.v - a.v)
-    });
     let bends = steps.map(|(du, dv)| (uu * du * du + 2.0 * uv * du * dv + vv * dv * dv) / 2.0);
     let rest = (h * h * ruu + 2.0 * h * k * ruv + k * k * rvv) / 8.0;
     let height = greatest(bends) + rest;

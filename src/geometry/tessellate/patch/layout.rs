@@ -65,6 +65,14 @@ impl Block<'_> {
         self.surface.sided((u, side(u, self.u)), (v, side(v, self.v)))
     }
 
+    /// Jets wherever one of the parameters `u` crosses one of `v`, row by row.
+    pub(super) fn lattice(&self, u: &[f64], v: &[f64]) -> Vec<SurfaceJet> {
+        let sided = |parameters: &[f64], within: (f64, f64)| -> Vec<(f64, Side)> {
+            parameters.iter().map(|t| (*t, side(*t, within))).collect()
+        };
+        self.surface.lattice(&sided(u, self.u), &sided(v, self.v))
+    }
+
     pub(super) fn second(&self, u: f64, v: f64) -> SecondJet {
         self.surface.second((u, side(u, self.u)), (v, side(v, self.v)))
     }

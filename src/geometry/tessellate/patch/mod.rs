@@ -10,6 +10,7 @@
 mod assemble;
 mod density;
 mod judge;
+mod lattice;
 mod layout;
 mod net;
 mod plan;

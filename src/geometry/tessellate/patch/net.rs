@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::density::Density;
 use super::judge::{judge, judge_chord};
+use super::lattice::Lattice;
 use super::layout::{Block, Edge, Layout, Rim};
 use super::plan::Plan;
 use super::rows::{Corner, Cut, Free, Piece, weave};
@@ -16,6 +17,10 @@ pub(super) struct Net<'a> {
     pub(super) layout: Layout<'a>,
     pub(super) points: Vec<DVec3>,
     pub(super) pieces: Vec<Piece>,
+    /// Whether the grids of all blocks are given.
+    fixed: bool,
+    /// For each piece its lattice, if it is one.
+    lattices: Vec<Option<Lattice>>,
     pub(super) deviation: Deviation,
     /// For each edge, degrees by which normals jump across it; 180 at borders.
     pub(super) turns: Vec<f64>,
@@ -44,8 +49,9 @@ impl<'a> Net<'a> {
     pub(super) fn new(layout: Layout<'a>, detail: &Detail) -> Result<Self, TessellateError> {
         let turns = layout.edges.iter().map(|edge| turn(&layout, edge)).collect();
         let mut plans = plans(&layout, detail)?;
-        let mut net =
-            Self { layout, points: Vec::new(), pieces: Vec::new(), deviation: Deviation::NONE, turns };
+        let fixed = matches!(detail.density, SurfaceDensity::Grid { .. });
+        let (points, pieces, lattices) = (Vec::new(), Vec::new(), Vec::new());
+        let mut net = Self { layout, points, pieces, fixed, lattices, deviation: Deviation::NONE, turns };
         let SurfaceDensity::Tolerance(tolerance) = detail.density else {
             net.weave(&plans);
             net.deviation = net.measure();
@@ -74,6 +80,7 @@ impl<'a> Net<'a> {
         self.points = self.layout.nodes.clone();
         let cuts: Vec<Cut> = (0..self.layout.edges.len()).map(|edge| self.cut(edge, plans)).collect();
         self.pieces = Vec::with_capacity(plans.len());
+        self.lattices.clear();
         for (block, plan) in self.layout.blocks.iter().zip(plans) {
             let rims = Rim::ALL.map(|rim| {
                 let used = block.edge(rim);
@@ -84,13 +91,16 @@ impl<'a> Net<'a> {
                 }
                 cut
             });
-            let mut next = index(self.points.len());
-            let piece = weave(block, plan, &rims, &mut next);
-            for corner in &piece.corners {
-                if corner.point as usize == self.points.len() {
-                    self.points.push(block.jet(corner.u, corner.v).point);
-                }
-            }
+            let lattice = if self.fixed { Lattice::new(block, plan, &rims) } else { None };
+            let piece = if let Some(lattice) = &lattice {
+                lattice.piece(block, &rims, &mut self.points)
+            } else {
+                let mut next = index(self.points.len());
+                let mut piece = weave(block, plan, &rims, &mut next);
+                place(&mut self.points, block, &mut piece);
+                piece
+            };
+            self.lattices.push(lattice);
             self.pieces.push(piece);
         }
     }
@@ -157,7 +167,8 @@ impl<'a> Net<'a> {
         let (place, piece) = (&self.layout.blocks[block], &self.pieces[block]);
         let corners = triangle.map(|corner| piece.corners[corner as usize]);
         let points = corners.map(|corner| self.points[corner.point as usize]);
-        let verdict = judge(place, corners, points, tolerance);
+        let normals = triangle.map(|corner| piece.normals[corner as usize]);
+        let verdict = judge(place, (corners, normals), points, tolerance);
         let (bound, evidence) = verdict.bound(tolerance);
         let mut judged = Judged { bound, evidence, sides: verdict.sides };
         for side in 0..3 {
@@ -181,6 +192,11 @@ impl<'a> Net<'a> {
     fn measure(&self) -> Deviation {
         let mut deviation = Deviation::NONE;
         for (block, piece) in self.pieces.iter().enumerate() {
+            let lattice = self.lattices[block].as_ref();
+            if let Some(bound) = lattice.and_then(|lattice| self.measure_lattice(block, lattice)) {
+                deviation = deviation.union(bound);
+                continue;
+            }
             for triangle in &piece.triangles {
                 let judged = self.judge(block, triangle, f64::INFINITY);
                 deviation = deviation.union(judged.deviation());
@@ -188,12 +204,60 @@ impl<'a> Net<'a> {
         }
         deviation
     }
+
+    /// The proved bound of a lattice and of those of its rims that are lines of their own; none where there is no proof.
+    fn measure_lattice(&self, number: usize, lattice: &Lattice) -> Option<Deviation> {
+        let (block, piece) = (&self.layout.blocks[number], &self.pieces[number]);
+        let mut deviation = lattice.deviation(block, piece, &self.points)?;
+        for rim in Rim::ALL {
+            if self.turns[block.edge(rim).edge] <= FEATURE {
+                continue;
+            }
+            for (a, b) in lattice.along(rim) {
+                let ends = [a, b].map(|corner| piece.corners[corner as usize]);
+                let places = ends.map(|corner| self.points[corner.point as usize]);
+                let (bound, evidence) = judge_chord(block, (&ends[0], &ends[1]), places, f64::INFINITY);
+                deviation = deviation.union(Deviation::new(bound, evidence));
+            }
+        }
+        Some(deviation)
+    }
+}
+
+/// Finds the normals of all corners of a piece, and the points that are new.
+fn place(points: &mut Vec<DVec3>, block: &Block<'_>, piece: &mut Piece) {
+    /// Places that are evaluated at once: enough to share the cost of lines, few enough to stay small.
+    const AT_ONCE: usize = 1 << 13;
+    let corners = &piece.corners;
+    piece.normals = Vec::with_capacity(corners.len());
+    while piece.normals.len() < corners.len() {
+        let rest = &corners[piece.normals.len()..];
+        let rest = &rest[..rest.len().min(AT_ONCE)];
+        let row_along_u = rest.len() < 2 || rest[0].v == rest[1].v;
+        let lines = |corner: &Corner| if row_along_u { (corner.u, corner.v) } else { (corner.v, corner.u) };
+        let wide = rest.iter().take_while(|corner| lines(corner).1 == lines(&rest[0]).1).count();
+        let same = |row: &&[Corner]| {
+            let level = lines(&row[0]).1;
+            row.len() == wide && row.iter().zip(rest).all(|(a, b)| lines(a) == (lines(b).0, level))
+        };
+        let high = rest.chunks(wide).take_while(same).count();
+        let across: Vec<f64> = rest[..wide].iter().map(|corner| lines(corner).0).collect();
+        let up: Vec<f64> = (0..high).map(|row| lines(&rest[row * wide]).1).collect();
+        let jets = if row_along_u { block.lattice(&across, &up) } else { block.lattice(&up, &across) };
+        for (k, corner) in rest[..wide * high].iter().enumerate() {
+            let (column, row) = (k % wide, k / wide);
+            let jet = &jets[if row_along_u { k } else { column * high + row }];
+            piece.normals.push(jet.normal);
+            if corner.point as usize == points.len() {
+                points.push(jet.point);
+            }
+        }
+    }
 }
 
 impl Judged {
     pub(super) fn deviation(&self) -> Deviation {
-        let evidence = if self.bound == 0.0 { Evidence::Exact } else { self.evidence };
-        Deviation { bound: self.bound, evidence }
+        Deviation::new(self.bound, self.evidence)
     }
 }
 

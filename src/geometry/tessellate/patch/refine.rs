@@ -143,10 +143,12 @@ fn halve(
         return Some(*known);
     }
     let (u, v) = halfway(&corners[0], &corners[1]);
+    let jet = net.layout.blocks[block].jet(u, v);
     if *point == u32::MAX {
         *point = index(net.points.len());
-        net.points.push(net.layout.blocks[block].jet(u, v).point);
+        net.points.push(jet.point);
     }
+    net.pieces[block].normals.push(jet.normal);
     let made = index(net.pieces[block].corners.len());
     net.pieces[block].corners.push(Corner { u, v, point: *point, free: Free::Neither });
     middles.insert(key(a, b), made);

@@ -1,5 +1,7 @@
 //! Triangles of one block: rows of steps, zipped together, with strips where the rims are cut otherwise.
 
+use glam::DVec3;
+
 use super::density::Density;
 use super::layout::{Block, Rim};
 use super::plan::Plan;
@@ -27,6 +29,8 @@ pub(super) struct Corner {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Piece {
     pub(super) corners: Vec<Corner>,
+    /// The surface's own normal at each corner.
+    pub(super) normals: Vec<DVec3>,
     pub(super) triangles: Vec<[u32; 3]>,
 }
 

@@ -182,6 +182,19 @@ fn bounds_hold_and_are_kept() {
     }
 }
 
+#[test]
+fn bounds_of_grids_hold() {
+    for Case { name, shape, .. } in cases() {
+        for (u, v) in [(3, 5), (16, 12)] {
+            let detail = Detail { density: SurfaceDensity::Grid { u, v }, ..detail(1.0, true) };
+            let made = patchwork(&shape, &detail).unwrap();
+            let (found, bound) = (measured(&shape, &made), made.deviation.bound);
+            assert!(found <= bound * (1.0 + 1e-6) + 1e-12, "{name} {u} {v}: {found} beyond {bound}");
+            assert!(bound.is_finite(), "{name}");
+        }
+    }
+}
+
 /// The integral of sqrt |K| dA over twice the tolerance.
 fn optimum(surface: &AnySurface, tolerance: f64) -> f64 {
     const STEPS: u32 = 200;
