@@ -23,6 +23,7 @@ mod shading;
 mod shapes;
 mod sweeps;
 mod triangles;
+mod trimmed;
 mod wires;
 
 use kiln::compile::{Compiled, Options};

@@ -50,6 +50,17 @@ impl Builder<'_> {
         holes: &[CurveReference],
     ) -> Option<(Vec<AnyCurve>, Vec<usize>)> {
         let parts = self.closed_parts(profile, "outline", "outline's part");
+        self.cut_out(parts, fill, holes, profile.span())
+    }
+
+    /// The same of parts of an outline that are known.
+    pub(super) fn cut_out(
+        &mut self,
+        parts: Option<Vec<Profile>>,
+        fill: Fill,
+        holes: &[CurveReference],
+        span: Span,
+    ) -> Option<(Vec<AnyCurve>, Vec<usize>)> {
         let named = holes.iter().enumerate();
         let holes: Vec<_> = named
             .map(|(index, hole)| {
@@ -65,7 +76,7 @@ impl Builder<'_> {
         let islands = if parts.len() == 1 {
             vec![Island { outline: 0, holes: Vec::new() }]
         } else {
-            self.sort(&parts, fill, profile.span())?
+            self.sort(&parts, fill, span)?
         };
         let mut outlines = Vec::new();
         let mut counts = Vec::new();

@@ -34,6 +34,7 @@ mod shape;
 mod spline;
 mod svg;
 mod sweep;
+mod trimmed;
 mod turned;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};

@@ -24,7 +24,12 @@ impl Builder<'_> {
         handle
     }
 
-    fn shape_of(&mut self, user: &str, index: usize, reference: &ShapeReference) -> Option<ShapeHandle> {
+    pub(super) fn shape_of(
+        &mut self,
+        user: &str,
+        index: usize,
+        reference: &ShapeReference,
+    ) -> Option<ShapeHandle> {
         match reference {
             ShapeReference::Named(name) => self.named_shape(&name.value),
             ShapeReference::Inline(shape) => {
@@ -106,6 +111,7 @@ impl Builder<'_> {
             Kind::BSpline(surface) => self.b_spline_surface(surface, span).map(here),
             Kind::Nurbs(surface) => self.nurbs_surface(surface, span).map(here),
             Kind::Coons(patch) => self.coons(patch).map(here),
+            Kind::Trimmed(part) => self.trimmed(name, part, span),
             Kind::Quadric(quadric) => self.quadric(quadric, span).map(here),
             Kind::Gordon(network) => self.gordon(network, span).map(here),
             Kind::Mesh(mesh) => self.mesh(mesh, span).map(here),

@@ -7,6 +7,7 @@ use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::tessellate::{
     ClippedQuadric, Extrusion, FlatPlane, Geodesic, Patchwork, Revolution, RoundedBox, Sheet, Sweep,
+    TrimmedSurface,
 };
 
 /// Index of a shape in its model.
@@ -54,6 +55,8 @@ pub enum Recipe {
     Wire(Vec<AnyCurve>),
     /// A surface of the second degree, cut off.
     Quadric(ClippedQuadric),
+    /// A part of a surface inside lines of its parameters.
+    Trimmed(TrimmedSurface),
     /// Polygons, written out or imported. For each of their materials the model's, if it has one.
     Polygons {
         /// The polygons.

@@ -11,7 +11,7 @@ use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex, Wire};
 use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::{
     Detail, Deviation, SurfaceDensity, TessellateError, Tessellation, cuboid, extrude, geodesic, patchwork,
-    plane, quadric, revolve, rounded_box, sheet, sweep, wire,
+    plane, quadric, revolve, rounded_box, sheet, sweep, trimmed, wire,
 };
 use crate::model::{Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing, UvMode};
 
@@ -154,6 +154,7 @@ impl<'a> Maker<'a> {
             Recipe::Patches(patches) => patchwork(patches, &detail),
             Recipe::Sheet(face) => sheet(face, &detail),
             Recipe::Quadric(shape) => quadric(shape, &detail),
+            Recipe::Trimmed(shape) => trimmed(shape, &detail),
             Recipe::Polygons { mesh, materials } => {
                 return self.finished(shape, self.polygons(handle, mesh, materials)?);
             }

@@ -23,6 +23,7 @@ pub(super) fn source_count(recipe: &Recipe) -> u32 {
         Recipe::Extrusion(extrusion) => mesh::index(extrusion.outlines.len()) + 2,
         Recipe::Patches(patches) => mesh::index(patches.surfaces.len() + patches.caps.len()),
         Recipe::Polygons { .. }
+        | Recipe::Trimmed(_)
         | Recipe::RoundedBox(_)
         | Recipe::Geodesic(_)
         | Recipe::Plane(_)
@@ -139,6 +140,7 @@ fn collect(model: &Model, handle: ShapeHandle, outer: &DAffine3, all: &mut Vec<S
             patches.surfaces.iter().for_each(|surface| push(Kind::Patch(Box::new(Field::new(surface)))));
             patches.caps.iter().for_each(|_| push(Kind::Exact));
         }
+        Recipe::Trimmed(shape) => push(Kind::Patch(Box::new(Field::new(&shape.surface)))),
         Recipe::Wire(curves) => curves.iter().for_each(|curve| push(Kind::Line(curve.clone()))),
         Recipe::Quadric(shape) => {
             for source in 0..ClippedQuadric::SOURCES {
@@ -337,6 +339,7 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
         Recipe::Patches(patches) => patches.surfaces.iter().map(lattice).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Wire(curves) => curves.iter().map(along).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Quadric(shape) => shape.bounds(),
+        Recipe::Trimmed(shape) => shape.bounds(),
         Recipe::Assembly(_) => Bounds::EMPTY,
     }
 }

@@ -23,6 +23,7 @@ mod sheet;
 mod sweep;
 #[cfg(test)]
 mod tests;
+mod trimmed;
 mod wire;
 
 pub use cuboid::cuboid;
@@ -36,6 +37,7 @@ pub use revolve::{Revolution, revolve};
 pub use rounded::{RoundedBox, rounded_box};
 pub use sheet::{Sheet, sheet};
 pub use sweep::{Route, Sweep, sweep};
+pub use trimmed::{TrimmedSurface, trimmed};
 pub use wire::wire;
 
 use thiserror::Error;

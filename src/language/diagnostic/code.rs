@@ -265,6 +265,10 @@ codes! {
     NoQuadric = "K0873";
     /// a surface goes on without end
     EndlessQuadric = "K0874";
+    /// a shape is not one smooth surface that could be trimmed
+    TrimSurface = "K0876";
+    /// an outline leaves the parameters of its surface
+    TrimOutside = "K0877";
 
     /// a limit would be passed
     LimitPassed = "K0901";

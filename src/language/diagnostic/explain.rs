@@ -321,6 +321,12 @@ examples! {
     EndlessQuadric: "All quadrics but ellipsoids go on without end. `within` says where the shape ends: at the sides of a box.",
         "[shape.a.quadric]\nxx = 1\nyy = 1\nzz = -1\nconstant = -1" =>
         "[shape.a.quadric]\nxx = 1\nyy = 1\nzz = -1\nconstant = -1\nwithin = { min = [-2, -2, -1], max = [2, 2, 1] }";
+    TrimSurface: "`trimmed` cuts one smooth surface over parameters u and v. Boxes, balls and turned shapes are none, and neither are shapes of several patches or surfaces with an edge inside.",
+        "[shape.a.sphere]\nradius = 1\n[shape.b.trimmed]\nof = \"a\"\nprofile = { circle = { radius = 0.4 } }" =>
+        "[shape.a.patches]\ndegree = 1\ncontrol = [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]]\n[shape.b.trimmed]\nof = \"a\"\nprofile = { circle = { radius = 0.4, center = [0.5, 0.5] } }";
+    TrimOutside: "The outline of a trimmed surface is drawn on its parameters: x counts along u, y along v. It may touch their borders, which the message prints, but not leave them.",
+        "[shape.a.patches]\ndegree = 1\ncontrol = [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]]\n[shape.b.trimmed]\nof = \"a\"\nprofile = { circle = { radius = 0.4 } }" =>
+        "[shape.a.patches]\ndegree = 1\ncontrol = [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]]\n[shape.b.trimmed]\nof = \"a\"\nprofile = { circle = { radius = 0.4, center = [0.5, 0.5] } }";
     LimitPassed: "The asset would have more triangles, vertices or bytes than [limits] or the machine's owner allows. Nothing was made: the count is known before memory is taken.",
         "[limits]\ntriangles = 100\n[shape.a.sphere]\nradius = 1" => "[shape.a]\nsegments = 8\n[shape.a.sphere]\nradius = 1\n[limits]\ntriangles = 200";
     NothingToShow: "A document needs a shape, and where it has nodes at least one of them must show one.",

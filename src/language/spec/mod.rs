@@ -51,6 +51,7 @@ mod subdivision_curve;
 mod svg;
 mod sweep;
 mod tangent;
+mod trimmed;
 mod whole;
 mod wire;
 
@@ -100,6 +101,7 @@ pub use subdivision_curve::{CurveScheme, SubdivisionCurve};
 pub use svg::{Subpath, Svg, SvgArc, SvgPath, SvgSegment};
 pub use sweep::{Frame, ProfileStation, Sweep};
 pub use tangent::{Cardinal, CatmullRom, ChordPower, EndRule, Hermite, KochanekBartels, PerPoint};
+pub use trimmed::Trimmed;
 pub use whole::schema;
 pub use wire::Wire;
 

@@ -96,6 +96,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 5] = [
             "gordon",
             "quadric",
             "within",
+            "trimmed",
             "mesh",
             "import",
             "copy",

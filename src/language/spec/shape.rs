@@ -27,6 +27,7 @@ use crate::language::spec::ruled::{Ruled, Translational};
 use crate::language::spec::schema::Schemas;
 use crate::language::spec::spanned::Sp;
 use crate::language::spec::sweep::Sweep;
+use crate::language::spec::trimmed::Trimmed;
 use crate::language::spec::wire::Wire;
 use crate::language::value::Value;
 
@@ -149,6 +150,8 @@ kinds! {
         Gordon(Gordon) = "gordon";
         /// A surface by an equation of the second degree.
         Quadric(Quadric) = "quadric";
+        /// A part of a surface inside lines of its parameters.
+        Trimmed(Trimmed) = "trimmed";
         /// Points and faces, written out.
         Mesh(Mesh) = "mesh";
         /// A model from a file.

@@ -28,13 +28,13 @@ use crate::geometry::tessellate::Evidence;
 
 /// The verdict on a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Verdict {
+pub(in crate::geometry::tessellate) struct Verdict {
     /// A bound by proof; infinite where there is none.
-    pub(super) proved: f64,
+    pub(in crate::geometry::tessellate) proved: f64,
     /// A bound by samples.
-    pub(super) sampled: f64,
+    pub(in crate::geometry::tessellate) sampled: f64,
     /// How much each side bends away, as seen by the samples; side k lies opposite of corner k.
-    pub(super) sides: [f64; 3],
+    pub(in crate::geometry::tessellate) sides: [f64; 3],
 }
 
 /// Samples are raised by this share: a smooth surface may exceed them by terms of the next order.
@@ -51,7 +51,7 @@ const WIDER: f64 = 0.125;
 
 impl Verdict {
     /// The bound for a tolerance: the proof where it is good enough.
-    pub(super) fn bound(&self, tolerance: f64) -> (f64, Evidence) {
+    pub(in crate::geometry::tessellate) fn bound(&self, tolerance: f64) -> (f64, Evidence) {
         if self.proved <= tolerance || self.proved <= self.sampled {
             (self.proved, Evidence::Proved)
         } else {
@@ -61,7 +61,7 @@ impl Verdict {
 }
 
 /// Judges a triangle by its corners, the surface's normals there, and their places.
-pub(super) fn judge(
+pub(in crate::geometry::tessellate) fn judge(
     block: &Block<'_>,
     (corners, normals): ([Corner; 3], [DVec3; 3]),
     places: [DVec3; 3],

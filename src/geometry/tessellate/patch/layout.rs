@@ -15,12 +15,12 @@ pub use crate::geometry::surface::Rim;
 use crate::geometry::surface::{AnySurface, SecondJet, Surface, SurfaceJet};
 
 /// A smooth rectangle of one surface.
-pub(super) struct Block<'a> {
+pub(in crate::geometry::tessellate) struct Block<'a> {
     pub(super) surface: &'a AnySurface,
     /// Index of the surface.
     pub(super) source: u32,
-    pub(super) u: (f64, f64),
-    pub(super) v: (f64, f64),
+    pub(in crate::geometry::tessellate) u: (f64, f64),
+    pub(in crate::geometry::tessellate) v: (f64, f64),
     /// In the order of [`Rim::ALL`].
     pub(super) sides: [EdgeUse; 4],
     /// Whether its normal is turned around, so that neighbours look to one side.
@@ -57,11 +57,11 @@ pub(super) struct Layout<'a> {
 
 impl Block<'_> {
     /// Parameters at fractions of the block.
-    pub(super) fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
+    pub(in crate::geometry::tessellate) fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         (mix(self.u, x), mix(self.v, y))
     }
 
-    pub(super) fn jet(&self, u: f64, v: f64) -> SurfaceJet {
+    pub(in crate::geometry::tessellate) fn jet(&self, u: f64, v: f64) -> SurfaceJet {
         self.surface.sided((u, side(u, self.u)), (v, side(v, self.v)))
     }
 
@@ -83,6 +83,20 @@ impl Block<'_> {
 
     pub(super) fn edge(&self, rim: Rim) -> EdgeUse {
         self.sides[rim as usize]
+    }
+
+    /// All of a surface, by itself: what is asked of its edges means nothing.
+    pub(in crate::geometry::tessellate) fn alone(surface: &AnySurface) -> Block<'_> {
+        let (u, v) = (surface.domain_u(), surface.domain_v());
+        Block {
+            surface,
+            source: 0,
+            u: (u.start, u.end),
+            v: (v.start, v.end),
+            sides: [EdgeUse { edge: 0, backward: false }; 4],
+            flipped: false,
+            outer: [true; 4],
+        }
     }
 
     fn point(&self, place: (f64, f64)) -> DVec3 {

@@ -19,7 +19,10 @@ mod rows;
 #[cfg(test)]
 mod tests;
 
+pub(super) use judge::judge;
+pub(super) use layout::Block;
 pub use layout::Rim;
+pub(super) use rows::{Corner, Free};
 
 use super::{Detail, TessellateError, Tessellation};
 use crate::geometry::surface::AnySurface;

@@ -9,7 +9,7 @@ use crate::geometry::mesh::index;
 
 /// Which parameter of a corner means nothing, because it stands on a pole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Free {
+pub(in crate::geometry::tessellate) enum Free {
     Neither,
     U,
     V,
@@ -17,12 +17,12 @@ pub(super) enum Free {
 
 /// A corner of triangles in one block.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Corner {
-    pub(super) u: f64,
-    pub(super) v: f64,
+pub(in crate::geometry::tessellate) struct Corner {
+    pub(in crate::geometry::tessellate) u: f64,
+    pub(in crate::geometry::tessellate) v: f64,
     /// The point in space.
-    pub(super) point: u32,
-    pub(super) free: Free,
+    pub(in crate::geometry::tessellate) point: u32,
+    pub(in crate::geometry::tessellate) free: Free,
 }
 
 /// Triangles of one block, counter-clockwise where u runs to the right and v up.

@@ -23,8 +23,12 @@ impl Chart for SheetChart<'_> {
         self.quadric.settled(self.sheet.lift(place))
     }
 
-    fn judge(&self, corners: [DVec3; 3]) -> Judgment {
+    fn judge(&self, _: [DVec2; 3], corners: [DVec3; 3]) -> Judgment {
         judge(self.quadric, corners)
+    }
+
+    fn judge_edge(&self, _: [DVec2; 2], [from, to]: [DVec3; 2]) -> f64 {
+        judge(self.quadric, [from, to, (from + to) / 2.0]).bound
     }
 }
 
@@ -33,8 +37,12 @@ impl Chart for FlatChart {
         None
     }
 
-    fn judge(&self, _: [DVec3; 3]) -> Judgment {
+    fn judge(&self, _: [DVec2; 3], _: [DVec3; 3]) -> Judgment {
         Judgment { bound: 0.0, worst: DVec3::splat(1.0 / 3.0) }
+    }
+
+    fn judge_edge(&self, _: [DVec2; 2], _: [DVec3; 2]) -> f64 {
+        0.0
     }
 }
 

@@ -15,8 +15,11 @@ pub(in crate::geometry::tessellate) trait Chart {
     /// The point of the surface at plane coordinates; `None` where there is none near.
     fn lift(&self, place: DVec2) -> Option<DVec3>;
 
-    /// How far a triangle with corners on the surface lies from it.
-    fn judge(&self, corners: [DVec3; 3]) -> Judgment;
+    /// How far a triangle with corners on the surface, at these places, lies from it.
+    fn judge(&self, places: [DVec2; 3], corners: [DVec3; 3]) -> Judgment;
+
+    /// How far the surface lies from an edge between two of its points: flat triangles along it are no nearer.
+    fn judge_edge(&self, places: [DVec2; 2], ends: [DVec3; 2]) -> f64;
 }
 
 /// What is known of a triangle.
@@ -54,6 +57,8 @@ pub(in crate::geometry::tessellate) const NO_LINE: u32 = u32::MAX;
 pub(in crate::geometry::tessellate) struct Filled {
     /// Corners as indices of points, counterclockwise in the plane.
     pub(in crate::geometry::tessellate) triangles: Vec<[u32; 3]>,
+    /// Where points lie in the plane, by their indices.
+    pub(in crate::geometry::tessellate) places: Vec<(u32, DVec2)>,
     /// The greatest bound of all triangles.
     pub(in crate::geometry::tessellate) bound: f64,
 }
@@ -67,6 +72,10 @@ struct Corner {
 }
 
 impl Corner {
+    fn at(&self) -> DVec2 {
+        DVec2::new(self.place.x, self.place.y)
+    }
+
     fn is_on(&self, line: u32) -> bool {
         line != NO_LINE && self.lines.contains(&line)
     }
@@ -163,7 +172,9 @@ pub(in crate::geometry::tessellate) fn fill(
     }
     filling.refine(wanted)?;
     let triangles = filling.triangles();
-    Ok(Ok(Filled { triangles, bound: filling.bound }))
+    let places =
+        filling.delaunay.vertices().map(|vertex| (vertex.data().point, vertex.data().at())).collect();
+    Ok(Ok(Filled { triangles, places, bound: filling.bound }))
 }
 
 fn position(place: DVec2) -> Point2<f64> {
@@ -247,7 +258,8 @@ impl Filling<'_> {
         }
         let one_line = all[0].lines.iter().any(|line| all[1].is_on(*line) && all[2].is_on(*line));
         let beside = one_line && !is_sliver(&all);
-        let judgment = self.chart.judge(corners.map(|corner| self.points[corner as usize]));
+        let places = all.map(|corner| corner.at());
+        let judgment = self.chart.judge(places, corners.map(|corner| self.points[corner as usize]));
         let (bound, worst) = if beside && judgment.bound > 0.0 {
             (f64::INFINITY, DVec3::splat(1.0 / 3.0))
         } else {
@@ -345,10 +357,10 @@ impl Filling<'_> {
             return Some(if short { DVec3::splat(1.0 / 3.0) } else { triangle.worst });
         };
         // A flat triangle on the same edge is as far away as the edge itself: no point inside would help.
-        let at = |k: usize| self.points[corners[k % 3].point as usize];
-        let middle = (at(edge) + at(edge + 1)) / 2.0;
-        let leaf = self.chart.judge([at(edge), at(edge + 1), middle]);
-        (leaf.bound < 0.95 * triangle.bound).then_some(DVec3::splat(1.0 / 3.0))
+        let ends = [edge, edge + 1].map(|k| &corners[k % 3]);
+        let points = ends.map(|corner| self.points[corner.point as usize]);
+        let leaf = self.chart.judge_edge(ends.map(Corner::at), points);
+        (leaf < 0.95 * triangle.bound).then_some(DVec3::splat(1.0 / 3.0))
     }
 
     fn triangles(&self) -> Vec<[u32; 3]> {

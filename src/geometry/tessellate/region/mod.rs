@@ -11,6 +11,6 @@ mod fill;
 mod line;
 mod section;
 
-pub(super) use fill::{Chart, Fault, Judgment, NO_LINE, Outline, Place, Wanted, fill};
+pub(super) use fill::{Chart, Fault, Filled, Judgment, NO_LINE, Outline, Place, Wanted, fill};
 pub(super) use line::{Cut, Line, stations};
 pub(super) use section::{Arc, PlaneSection};
