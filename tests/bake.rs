@@ -9,6 +9,7 @@ mod document;
 mod drawings;
 mod glb;
 mod hostile;
+mod joined;
 mod lofts;
 mod mutation;
 mod nets;

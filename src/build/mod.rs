@@ -15,6 +15,7 @@ mod formula;
 mod formula_curve;
 mod implicit;
 mod import;
+mod joined;
 mod loft;
 mod material;
 mod moving;

@@ -112,6 +112,7 @@ impl Builder<'_> {
             Kind::Nurbs(surface) => self.nurbs_surface(surface, span).map(here),
             Kind::Coons(patch) => self.coons(patch).map(here),
             Kind::Trimmed(part) => self.trimmed(name, part, span),
+            Kind::Joined(joined) => self.joined_surfaces(name, joined),
             Kind::Quadric(quadric) => self.quadric(quadric, span).map(here),
             Kind::Gordon(network) => self.gordon(network, span).map(here),
             Kind::Mesh(mesh) => self.mesh(mesh, span).map(here),

@@ -269,6 +269,10 @@ codes! {
     TrimSurface = "K0876";
     /// an outline leaves the parameters of its surface
     TrimOutside = "K0877";
+    /// a shape is no surface over parameters
+    NoSurface = "K0878";
+    /// surfaces share no side
+    ApartSurfaces = "K0879";
 
     /// a limit would be passed
     LimitPassed = "K0901";

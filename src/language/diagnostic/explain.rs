@@ -327,6 +327,12 @@ examples! {
     TrimOutside: "The outline of a trimmed surface is drawn on its parameters: x counts along u, y along v. It may touch their borders, which the message prints, but not leave them.",
         "[shape.a.patches]\ndegree = 1\ncontrol = [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]]\n[shape.b.trimmed]\nof = \"a\"\nprofile = { circle = { radius = 0.4 } }" =>
         "[shape.a.patches]\ndegree = 1\ncontrol = [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]]\n[shape.b.trimmed]\nof = \"a\"\nprofile = { circle = { radius = 0.4, center = [0.5, 0.5] } }";
+    NoSurface: "Surfaces over two parameters have sides by which they can be joined. Shapes of other kinds stand together in a `group`.",
+        "[shape.a.sphere]\nradius = 1\n[shape.b.patches]\ndegree = 1\ncontrol = [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]]\n[shape.c.joined]\nof = [\"a\", \"b\"]" =>
+        "[shape.a.sphere]\nradius = 1\n[shape.b.patches]\ndegree = 1\ncontrol = [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]]\n[shape.c.group]\nof = [\"a\", \"b\"]";
+    ApartSurfaces: "Joined surfaces share sides: whole lines, the same points at the same shares of the way. The message prints how far the nearest sides are apart.",
+        "[shape.a.patches]\ndegree = 1\ncontrol = [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 0]]]\n[shape.b.patches]\ndegree = 1\ncontrol = [[[1.1, 0, 0], [2, 0, 1]], [[1.1, 1, 0], [2, 1, 1]]]\n[shape.c.joined]\nof = [\"a\", \"b\"]" =>
+        "[shape.a.patches]\ndegree = 1\ncontrol = [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 0]]]\n[shape.b.patches]\ndegree = 1\ncontrol = [[[1, 0, 0], [2, 0, 1]], [[1, 1, 0], [2, 1, 1]]]\n[shape.c.joined]\nof = [\"a\", \"b\"]";
     LimitPassed: "The asset would have more triangles, vertices or bytes than [limits] or the machine's owner allows. Nothing was made: the count is known before memory is taken.",
         "[limits]\ntriangles = 100\n[shape.a.sphere]\nradius = 1" => "[shape.a]\nsegments = 8\n[shape.a.sphere]\nradius = 1\n[limits]\ntriangles = 200";
     NothingToShow: "A document needs a shape, and where it has nodes at least one of them must show one.",

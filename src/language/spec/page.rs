@@ -97,6 +97,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 5] = [
             "quadric",
             "within",
             "trimmed",
+            "joined",
             "mesh",
             "import",
             "copy",

@@ -9,6 +9,7 @@ use crate::language::spec::combine::{Array, Copy, Group, Mirror};
 use crate::language::spec::construct::{choices, kinds, table};
 use crate::language::spec::coons::{Coons, Gordon};
 use crate::language::spec::import::Import;
+use crate::language::spec::joined::Joined;
 use crate::language::spec::kind::{Kinds, take_kind};
 use crate::language::spec::loft::Loft;
 use crate::language::spec::mesh::Mesh;
@@ -152,6 +153,8 @@ kinds! {
         Quadric(Quadric) = "quadric";
         /// A part of a surface inside lines of its parameters.
         Trimmed(Trimmed) = "trimmed";
+        /// Surfaces of several shapes as one skin.
+        Joined(Joined) = "joined";
         /// Points and faces, written out.
         Mesh(Mesh) = "mesh";
         /// A model from a file.
