@@ -155,6 +155,9 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
         RealizeError::Tessellate(TessellateError::NoArea) => {
             (Code::NoArea, "a finer `tolerance` or more `segments` keep the outline open")
         }
+        RealizeError::Tessellate(TessellateError::BelowBase { .. }) => {
+            (Code::BelowBase, "write a lower `base`, or raise the heights with `range`")
+        }
         RealizeError::Polygons(_) => (Code::BadMesh, "check the indices of the faces"),
     };
     Diagnostic::error(code, format!("shape `{name}` cannot be made: {error}"))

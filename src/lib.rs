@@ -16,7 +16,8 @@
 //! | `geometry::mesh` | `geometry::number`, `geometry::planar` |
 //! | `geometry::surface` | `geometry::number`, `geometry::curve` |
 //! | `geometry::field` | `geometry::number` |
-//! | `geometry::tessellate` | `geometry::number`, `geometry::planar`, `geometry::curve`, `geometry::mesh`, `geometry::surface`, `geometry::field` |
+//! | `geometry::map` | `geometry::number` |
+//! | `geometry::tessellate` | `geometry::number`, `geometry::planar`, `geometry::curve`, `geometry::mesh`, `geometry::surface`, `geometry::field`, `geometry::map` |
 //! | `geometry::profile` | `geometry::number`, `geometry::planar`, `geometry::curve`, `geometry::tessellate` |
 //! | `import` | `geometry::number`, `geometry::mesh` |
 //! | `model` | `geometry` |

@@ -8,6 +8,7 @@ mod determinism;
 mod document;
 mod drawings;
 mod glb;
+mod heights;
 mod hostile;
 mod joined;
 mod lofts;

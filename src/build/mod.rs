@@ -13,10 +13,12 @@ mod curve;
 mod extrude;
 mod formula;
 mod formula_curve;
+mod height;
 mod implicit;
 mod import;
 mod joined;
 mod loft;
+mod map;
 mod material;
 mod moving;
 mod node;
@@ -38,10 +40,13 @@ mod sweep;
 mod trimmed;
 mod turned;
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use indexmap::IndexMap;
 
 use crate::geometry::curve::AnyCurve;
+use crate::geometry::map::GridField;
 use crate::language::diagnostic::{Diagnostic, Severity};
 use crate::language::source::{Files, Span};
 use crate::language::spec::{Spec, Up};
@@ -98,6 +103,7 @@ struct Builder<'a> {
     materials: IndexMap<String, Option<MaterialHandle>>,
     images: IndexMap<String, Option<ImageHandle>>,
     curves: IndexMap<String, Option<Vec<AnyCurve>>>,
+    maps: IndexMap<String, Option<Arc<GridField>>>,
     /// The definition that is being built, and whether what is built now only stands inside it.
     within: Option<(String, bool)>,
 }
@@ -132,6 +138,7 @@ impl<'a> Builder<'a> {
             materials: IndexMap::new(),
             images: IndexMap::new(),
             curves: IndexMap::new(),
+            maps: IndexMap::new(),
             within: None,
         }
     }
@@ -144,6 +151,9 @@ impl<'a> Builder<'a> {
         }
         for name in spec.curves.keys() {
             self.named_parts(name);
+        }
+        for name in spec.maps.keys() {
+            self.named_map(name);
         }
         for name in spec.shapes.keys() {
             self.named_shape(name);

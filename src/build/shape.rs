@@ -40,7 +40,7 @@ impl Builder<'_> {
 
     fn shape(&mut self, name: &str, definition: &ShapeDefinition, span: Span) -> Option<ShapeHandle> {
         let options = self.options(&definition.options);
-        let (recipe, place) = self.recipe(name, &definition.kind, span)?;
+        let (recipe, place) = self.recipe(name, definition, span)?;
         let faces = std::mem::take(&mut self.face_places);
         let mut options = options?;
         options.placement *= place;
@@ -76,8 +76,9 @@ impl Builder<'_> {
     }
 
     /// The recipe of a kind and where it is put.
-    fn recipe(&mut self, name: &str, kind: &Kind, span: Span) -> Option<(Recipe, DAffine3)> {
+    fn recipe(&mut self, name: &str, definition: &ShapeDefinition, span: Span) -> Option<(Recipe, DAffine3)> {
         let here = |recipe: Recipe| (recipe, DAffine3::IDENTITY);
+        let kind = &definition.kind;
         match kind {
             Kind::Box(_)
             | Kind::Sphere(_)
@@ -115,6 +116,7 @@ impl Builder<'_> {
             Kind::Joined(joined) => self.joined_surfaces(name, joined),
             Kind::Quadric(quadric) => self.quadric(quadric, span).map(here),
             Kind::Gordon(network) => self.gordon(network, span).map(here),
+            Kind::HeightMap(map) => self.height_map(map, &definition.options).map(here),
             Kind::Mesh(mesh) => self.mesh(mesh, span).map(here),
             Kind::Import(import) => self.import(import, span).map(here),
             Kind::Copy(copy) => {

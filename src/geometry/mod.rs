@@ -1,4 +1,4 @@
-//! Geometry: numbers, formulas, curves, surfaces, meshes, and the step from continuous to discrete.
+//! Geometry: numbers, formulas, fields, curves, surfaces, meshes, and the step from continuous to discrete.
 //!
 //! Kernels here compute in `f64`, know nothing of the language, of files or of the number of threads, and
 //! give the same bits on every machine.
@@ -6,6 +6,7 @@
 pub mod curve;
 pub mod field;
 pub mod formula;
+pub mod map;
 pub mod mesh;
 pub mod number;
 pub mod planar;

@@ -6,6 +6,7 @@
 
 mod error;
 mod foreign;
+pub mod heights;
 pub mod image;
 pub mod obj;
 pub mod stl;

@@ -6,8 +6,8 @@ use super::MaterialHandle;
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::tessellate::{
-    ClippedQuadric, Extrusion, FlatPlane, Geodesic, Patchwork, Revolution, RoundedBox, Sheet, Sweep,
-    TrimmedSurface,
+    ClippedQuadric, Extrusion, FlatPlane, Geodesic, HeightMap, Patchwork, Revolution, RoundedBox, Sheet,
+    Sweep, TrimmedSurface,
 };
 
 /// Index of a shape in its model.
@@ -51,6 +51,8 @@ pub enum Recipe {
     Patches(Patchwork),
     /// A flat face inside closed curves.
     Sheet(Sheet),
+    /// Heights over a rectangle.
+    Height(HeightMap),
     /// Curves as lines.
     Wire(Vec<AnyCurve>),
     /// A surface of the second degree, cut off.

@@ -87,6 +87,7 @@ pub(super) fn least_triangles(model: &Model) -> Vec<u64> {
             }
             Recipe::Cuboid { .. } => 12,
             Recipe::RoundedBox(_) => 44,
+            Recipe::Height(_) => 2,
             _ => 1,
         });
     }

@@ -4,6 +4,7 @@
 //! every part of it, after all maps; the limits hold before memory is taken. Not promised: that a shape is
 //! closed; the report measures that.
 
+mod height;
 mod limit;
 mod nearest;
 mod node;

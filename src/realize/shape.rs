@@ -10,8 +10,8 @@ use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
 use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex, Wire};
 use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::{
-    Detail, Deviation, SurfaceDensity, TessellateError, Tessellation, cuboid, extrude, geodesic, patchwork,
-    plane, quadric, revolve, rounded_box, sheet, sweep, trimmed, wire,
+    Detail, Deviation, HeightBound, SurfaceDensity, TessellateError, Tessellation, cuboid, extrude, geodesic,
+    height_map, patchwork, plane, quadric, revolve, rounded_box, sheet, sweep, trimmed, wire,
 };
 use crate::model::{Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing, UvMode};
 
@@ -155,6 +155,7 @@ impl<'a> Maker<'a> {
             Recipe::Sheet(face) => sheet(face, &detail),
             Recipe::Quadric(shape) => quadric(shape, &detail),
             Recipe::Trimmed(shape) => trimmed(shape, &detail),
+            Recipe::Height(map) => height_map(map, &detail, tolerance / stretch),
             Recipe::Polygons { mesh, materials } => {
                 return self.finished(shape, self.polygons(handle, mesh, materials)?);
             }
@@ -271,7 +272,8 @@ impl<'a> Maker<'a> {
 /// Whether the document fixes how finely a shape is cut.
 fn has_fixed_grid(shape: &Shape) -> bool {
     let divided = matches!(&shape.recipe, Recipe::Geodesic(ball) if ball.frequency.is_some());
-    shape.options.density.is_some() || divided
+    let sampled = matches!(&shape.recipe, Recipe::Height(map) if map.bound != HeightBound::Surface);
+    shape.options.density.is_some() || divided || sampled
 }
 
 fn cost(made: &Made) -> Cost {

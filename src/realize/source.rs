@@ -11,13 +11,16 @@ use crate::geometry::field::Quadric;
 use crate::geometry::mesh::{self, Anchor};
 use crate::geometry::number::{Bounds, hypot};
 use crate::geometry::surface::{AnySurface, Surface as _, SweptWall};
-use crate::geometry::tessellate::{ClippedQuadric, Density, RoundedBox, Route, discretize};
+use crate::geometry::tessellate::{
+    ClippedQuadric, Closing, Density, HeightMap, RoundedBox, Route, discretize,
+};
 use crate::model::{Model, Recipe, ShapeHandle};
 
 /// How many surfaces the anchors of a recipe tell apart.
 pub(super) fn source_count(recipe: &Recipe) -> u32 {
     match recipe {
         Recipe::Cuboid { .. } => 6,
+        Recipe::Height(_) => 3,
         Recipe::Revolution(_) => 3,
         Recipe::Sweep(sweep) => mesh::index(sweep.outlines.len()) + 2,
         Recipe::Extrusion(extrusion) => mesh::index(extrusion.outlines.len()) + 2,
@@ -52,6 +55,8 @@ enum Kind {
     Extruded(AnyCurve),
     Swept(SweptWall),
     Patch(Box<Field>),
+    /// Heights over a rectangle, moved along y.
+    Height(Arc<HeightMap>, f64),
     /// A curve by itself.
     Line(AnyCurve),
     /// Where a polynomial is zero.
@@ -127,6 +132,13 @@ fn collect(model: &Model, handle: ShapeHandle, outer: &DAffine3, all: &mut Vec<S
             extrusion.outlines.iter().for_each(|outline| push(Kind::Extruded(outline.clone())));
             push(Kind::Exact);
             push(Kind::Exact);
+        }
+        Recipe::Height(map) => {
+            let shared = Arc::new(map.clone());
+            push(Kind::Height(shared.clone(), 0.0));
+            push(Kind::Exact);
+            let depth = if let Closing::Thickness(depth) = map.close { depth } else { 0.0 };
+            push(Kind::Height(shared, -depth));
         }
         Recipe::Sweep(sweep) => {
             let surface = Arc::new(sweep.surface());
@@ -251,6 +263,7 @@ impl Source {
             }
             Kind::Swept(wall) => super::swept::distance(wall, local, window),
             Kind::Patch(surface) => surface.distance(local, window),
+            Kind::Height(map, lift) => super::height::distance(map, local - DVec3::Y * *lift),
             Kind::Line(curve) => distance_near(curve, local, window.u),
             Kind::Quadric(quadric) => {
                 quadric.settled(local).map_or(f64::INFINITY, |nearest| nearest.distance(local))
@@ -336,6 +349,7 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
                 }
             }
         }
+        Recipe::Height(map) => super::height::extent(map),
         Recipe::Patches(patches) => patches.surfaces.iter().map(lattice).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Wire(curves) => curves.iter().map(along).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Quadric(shape) => shape.bounds(),

@@ -11,6 +11,7 @@ mod cuboid;
 mod discretize;
 mod extrude;
 mod geodesic;
+mod height;
 mod patch;
 mod plane;
 mod quadric;
@@ -30,6 +31,7 @@ pub use cuboid::cuboid;
 pub use discretize::{Density, Station, arc_lengths, discretize};
 pub use extrude::{Extrusion, extrude};
 pub use geodesic::{Geodesic, geodesic};
+pub use height::{Closing, HeightBound, HeightMap, height_map};
 pub use patch::{Patchwork, Rim, patchwork};
 pub use plane::{FlatPlane, plane};
 pub use quadric::{ClippedQuadric, quadric};
@@ -40,6 +42,7 @@ pub use sweep::{Route, Sweep, sweep};
 pub use trimmed::{TrimmedSurface, trimmed};
 pub use wire::wire;
 
+use glam::DVec2;
 use thiserror::Error;
 
 use super::mesh::Mesh;
@@ -141,6 +144,16 @@ pub enum TessellateError {
     Cap {
         /// What the triangulation said.
         reason: String,
+    },
+    /// A height map that reaches below the base that closes it.
+    #[error("it is {height} high at [{}, {}], below its base at {base}", place.x, place.y)]
+    BelowBase {
+        /// A height below the base.
+        height: f64,
+        /// The base.
+        base: f64,
+        /// x and z of that height.
+        place: DVec2,
     },
     /// The outline encloses no area.
     #[error("the outline encloses no area")]

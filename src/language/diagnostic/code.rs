@@ -278,6 +278,18 @@ codes! {
     LimitPassed = "K0901";
     /// the result has nothing to show
     NothingToShow = "K0902";
+    /// a map has too few samples
+    MapSize = "K0903";
+    /// a file holds no map
+    MapFile = "K0904";
+    /// a picture cannot be a map
+    MapImage = "K0905";
+    /// a sample of a map has no value
+    NoValue = "K0906";
+    /// a height map reaches below its base
+    BelowBase = "K0907";
+    /// scattered points make no map
+    MapPoints = "K0908";
 
     /// an assertion does not hold
     AssertionFailed = "K0951";

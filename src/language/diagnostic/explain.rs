@@ -337,6 +337,18 @@ examples! {
         "[limits]\ntriangles = 100\n[shape.a.sphere]\nradius = 1" => "[shape.a]\nsegments = 8\n[shape.a.sphere]\nradius = 1\n[limits]\ntriangles = 200";
     NothingToShow: "A document needs a shape, and where it has nodes at least one of them must show one.",
         "[material.clay]" => "[shape.a.sphere]\nradius = 1";
+    MapSize: "A map needs at least two rows and two columns: a single one spans no area.",
+        "[shape.a.height-map]\nmap = { grid = { rows = [[0, 1, 2]] } }\nsize = [1, 1]" => "[shape.a.height-map]\nmap = { grid = { rows = [[0, 1, 2], [1, 2, 3]] } }\nsize = [1, 1]";
+    MapFile: "The file is not the grid of numbers that is asked for: an ASCII grid whose header or numbers are wrong, or a raw file whose length does not fit columns, rows and the size of its numbers.",
+        "[shape.a.height-map]\nmap = { raw = { file = \"label.png\", columns = 3, rows = 3 } }\nsize = [1, 1]" => "[shape.a.height-map]\nmap = { grid = { rows = [[0, 1], [1, 2]] } }\nsize = [1, 1]";
+    MapImage: "Maps are read from grey PNG pictures of 8 or 16 bits. Colors, palettes and transparency have no height; convert the picture to grey, best with 16 bits, since 256 steps show on smooth ground.",
+        "[shape.a.height-map]\nmap = { image = { file = \"label.png\" } }\nsize = [1, 1]" => "[shape.a.height-map]\nmap = { grid = { rows = [[0, 1], [1, 2]] } }\nsize = [1, 1]";
+    NoValue: "A sample of a map is marked as having no value, or is not a finite number. Nothing is filled in silently.",
+        "[shape.a.height-map]\nmap = { formula = { f = \"= sqrt(x - 0.5)\" } }\nsize = [1, 1]" => "[shape.a.height-map]\nmap = { formula = { f = \"= sqrt(abs(x - 0.5))\" } }\nsize = [1, 1]";
+    BelowBase: "A height map that is closed by a base lies above it everywhere. Lower the base, or raise the heights with `range`.",
+        "[shape.a.height-map]\nmap = { grid = { rows = [[1, -1], [1, 2]] } }\nsize = [1, 1]\nclose = \"base\"" => "[shape.a.height-map]\nmap = { grid = { rows = [[1, -1], [1, 2]] } }\nsize = [1, 1]\nclose = \"base\"\nbase = -2";
+    MapPoints: "Scattered points make a map when they are at different places and not all on one line.",
+        "[shape.a.height-map]\nmap = { points = { points = [[0, 0, 1], [1, 1, 2], [2, 2, 3]] } }\nsize = [1, 1]" => "[shape.a.height-map]\nmap = { points = { points = [[0, 0, 1], [1, 1, 2], [0, 2, 3]] } }\nsize = [1, 1]";
     AssertionFailed: "What [assert] demands does not hold of the result. Nothing was written.",
         "[shape.a.box]\nsize = [1, 1, 1]\n[assert]\ntriangles = 10" => "[shape.a.box]\nsize = [1, 1, 1]\n[assert]\ntriangles = 12";
     UnknownFact: "Keys of [assert] are paths of the report: `triangles`, `shapes.NAME.area`, `totals.draw-calls`. With one shape its facts need no path.",

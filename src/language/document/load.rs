@@ -12,7 +12,7 @@ use crate::language::value::{Data, Entry, Table, Value, parse, quote};
 const DEEPEST: usize = 32;
 
 /// What several files may define together: in each family a name once.
-const SHARED: [&str; 7] = ["curve", "shape", "material", "node", "parameters", "variant", "assert"];
+const SHARED: [&str; 8] = ["curve", "map", "shape", "material", "node", "parameters", "variant", "assert"];
 
 /// What must be the same in every file of a document.
 const EQUAL: [&str; 2] = ["unit", "up"];

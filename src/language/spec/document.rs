@@ -8,9 +8,10 @@ use crate::language::spec::construct::{choices, table};
 use crate::language::spec::curve::Curve;
 use crate::language::spec::import::Up;
 use crate::language::spec::limit::Limits;
+use crate::language::spec::map::MapDefinition;
 use crate::language::spec::material::Material;
 use crate::language::spec::node::Node;
-use crate::language::spec::reference::{CurveReference, ShapeReference};
+use crate::language::spec::reference::{CurveReference, MapReference, ShapeReference};
 use crate::language::spec::shape::ShapeDefinition;
 use crate::language::spec::spanned::Sp;
 
@@ -29,6 +30,8 @@ pub struct Spec {
     pub asset: Asset,
     /// `[curve.NAME]`, in the order of the text.
     pub curves: IndexMap<String, Definition<Curve>>,
+    /// `[map.NAME]`, in the order of the text.
+    pub maps: IndexMap<String, Definition<MapDefinition>>,
     /// `[shape.NAME]`, in the order of the text.
     pub shapes: IndexMap<String, Definition<ShapeDefinition>>,
     /// `[material.NAME]`, in the order of the text.
@@ -101,6 +104,15 @@ impl Spec {
         match reference {
             CurveReference::Named(name) => self.curves.get(&name.value).map(|definition| &definition.value),
             CurveReference::Inline(curve) => Some(&curve.value),
+        }
+    }
+
+    /// The map that a reference names or writes; `None` only for a reference of another document.
+    #[must_use]
+    pub fn map<'s>(&'s self, reference: &'s MapReference) -> Option<&'s MapDefinition> {
+        match reference {
+            MapReference::Named(name) => self.maps.get(&name.value).map(|definition| &definition.value),
+            MapReference::Inline(map) => Some(&map.value),
         }
     }
 

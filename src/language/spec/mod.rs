@@ -14,6 +14,7 @@ mod curve;
 mod document;
 mod formula;
 mod grid;
+mod height;
 mod implicit;
 mod import;
 mod joined;
@@ -21,6 +22,7 @@ mod kind;
 mod knots;
 mod limit;
 mod loft;
+mod map;
 mod material;
 mod mesh;
 mod name;
@@ -69,12 +71,17 @@ pub use curve::{Circle, Curve, Ellipse, Helix, Line, Polyline, Reverse, Transfor
 pub use document::{Asset, Definition, Spec, Unit};
 pub use formula::{Formula, FormulaCurve, FormulaForm};
 pub use grid::{Degrees, Directions, Rows};
+pub use height::{HeightBound, HeightClose, HeightMap};
 pub use implicit::Implicit;
 pub use import::{FilePath, Import, Up};
 pub use joined::Joined;
 pub use knots::KnotRule;
 pub use limit::Limits;
 pub use loft::{Across, Loft, LoftEnd, Matching, PlacedProfile, Profile};
+pub use map::{
+    Between, Map, MapCombine, MapDefinition, MapFormula, MapGrid, MapImage, MapNoise, MapOperation,
+    MapOptions, MapPoints, MapRaw, RawNumber, Scatter,
+};
 pub use material::{Alpha, Color, Filter, Material, Texture, Wrap};
 pub use mesh::Mesh;
 pub use node::Node;
@@ -92,7 +99,9 @@ pub use primitive::{
 };
 pub use profile::{Axis, Extrude, Fill, Revolve};
 pub use quadric::{Quadric, Within};
-pub use reference::{CurveReference, Family, MaterialName, NodeName, ShapeName, ShapeReference};
+pub use reference::{
+    CurveReference, Family, MapReference, MaterialName, NodeName, ShapeName, ShapeReference,
+};
 pub use ruled::{End, Ruled, Translational};
 pub use scaling::{Blend, Factor, ScaleStation, Scaling};
 pub use shape::{Shape, ShapeDefinition, ShapeOptions, Smoothing, Uv};

@@ -11,7 +11,7 @@ use crate::language::spec::whole::ordered;
 use crate::language::value::show_number;
 
 /// The chapters after the first, and the tables that stand in each.
-const CHAPTERS: [(&str, &str, &[&str]); 5] = [
+const CHAPTERS: [(&str, &str, &[&str]); 6] = [
     (
         "Curves",
         "A curve is written `[curve.NAME.KIND]`, or in place where a curve is asked for: `{ circle = { radius = 0.005 } }`.",
@@ -57,6 +57,11 @@ const CHAPTERS: [(&str, &str, &[&str]); 5] = [
         ],
     ),
     (
+        "Maps",
+        "A map is written `[map.NAME]`, for the fields of every map, and `[map.NAME.KIND]`, or in place where a map is asked for.",
+        &["map", "map image", "map raw", "map grid", "map points", "map formula", "map noise", "map combine"],
+    ),
+    (
         "Shapes",
         "A shape is written `[shape.NAME]`, for the fields of every shape, and `[shape.NAME.KIND]`.",
         &[
@@ -98,6 +103,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 5] = [
             "within",
             "trimmed",
             "joined",
+            "height map",
             "mesh",
             "import",
             "copy",

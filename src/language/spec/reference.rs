@@ -5,6 +5,7 @@ use serde_json::{Value as Json, json};
 use crate::language::source::Span;
 use crate::language::spec::curve::Curve;
 use crate::language::spec::kind::take_kind;
+use crate::language::spec::map::MapDefinition;
 use crate::language::spec::reader::{Fields, Read, Reader};
 use crate::language::spec::schema::{Schemas, any_of};
 use crate::language::spec::shape::ShapeDefinition;
@@ -16,6 +17,8 @@ use crate::language::value::{Data, Value};
 pub enum Family {
     /// `[curve.NAME.KIND]`.
     Curve,
+    /// `[map.NAME.KIND]`.
+    Map,
     /// `[shape.NAME.KIND]`.
     Shape,
     /// `[material.NAME]`.
@@ -26,13 +29,14 @@ pub enum Family {
 
 impl Family {
     /// All families.
-    pub const ALL: [Self; 4] = [Self::Curve, Self::Shape, Self::Material, Self::Node];
+    pub const ALL: [Self; 5] = [Self::Curve, Self::Map, Self::Shape, Self::Material, Self::Node];
 
     /// The word of headers and messages.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
             Self::Curve => "curve",
+            Self::Map => "map",
             Self::Shape => "shape",
             Self::Material => "material",
             Self::Node => "node",
@@ -62,6 +66,15 @@ pub enum CurveReference {
     Inline(Sp<Box<Curve>>),
 }
 
+/// The map that a field asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MapReference {
+    /// By name; the name is defined.
+    Named(Sp<String>),
+    /// Written in place: `{ noise = { hills = [3, 3] } }`, common fields beside the kind.
+    Inline(Sp<Box<MapDefinition>>),
+}
+
 /// The shape that a field asks for.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShapeReference {
@@ -78,6 +91,17 @@ impl CurveReference {
         match self {
             Self::Named(name) => name.span,
             Self::Inline(curve) => curve.span,
+        }
+    }
+}
+
+impl MapReference {
+    /// Where it is written.
+    #[must_use]
+    pub fn span(&self) -> Span {
+        match self {
+            Self::Named(name) => name.span,
+            Self::Inline(map) => map.span,
         }
     }
 }
@@ -110,6 +134,26 @@ impl Read for CurveReference {
 
     fn schema(schemas: &mut Schemas) -> Json {
         named_or_inline(Curve::schema(schemas))
+    }
+}
+
+impl Read for MapReference {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        match &value.data {
+            Data::String(name) => Some(Self::Named(named(Family::Map, name, value.span, reader))),
+            Data::Table(_) => {
+                let map = Box::<MapDefinition>::read(value, reader)?;
+                Some(Self::Inline(Sp::new(map, value.span)))
+            }
+            _ => {
+                reader.mismatch(value, "the name of a map, or a map in place");
+                None
+            }
+        }
+    }
+
+    fn schema(schemas: &mut Schemas) -> Json {
+        named_or_inline(MapDefinition::schema(schemas))
     }
 }
 

@@ -8,6 +8,7 @@ use crate::language::spec::check::Check;
 use crate::language::spec::combine::{Array, Copy, Group, Mirror};
 use crate::language::spec::construct::{choices, kinds, table};
 use crate::language::spec::coons::{Coons, Gordon};
+use crate::language::spec::height::HeightMap;
 use crate::language::spec::import::Import;
 use crate::language::spec::joined::Joined;
 use crate::language::spec::kind::{Kinds, take_kind};
@@ -155,6 +156,8 @@ kinds! {
         Trimmed(Trimmed) = "trimmed";
         /// Surfaces of several shapes as one skin.
         Joined(Joined) = "joined";
+        /// Ground by a map of heights.
+        HeightMap(HeightMap) = "height-map";
         /// Points and faces, written out.
         Mesh(Mesh) = "mesh";
         /// A model from a file.

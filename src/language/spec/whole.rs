@@ -8,6 +8,7 @@ use crate::language::spec::curve::Curve;
 use crate::language::spec::document::{Asset, Unit};
 use crate::language::spec::import::Up;
 use crate::language::spec::limit::LimitFields;
+use crate::language::spec::map::MapDefinition;
 use crate::language::spec::material::Material;
 use crate::language::spec::node::Node;
 use crate::language::spec::reader::Read;
@@ -72,6 +73,7 @@ fn section(name: &str, schemas: &mut Schemas) -> Json {
         "asset" => Asset::schema(schemas),
         "parameters" => named(json!({ "type": ["number", "boolean", "array", "string"] })),
         "curve" => named(Curve::schema(schemas)),
+        "map" => named(MapDefinition::schema(schemas)),
         "shape" => named(ShapeDefinition::schema(schemas)),
         "material" => named(Material::schema(schemas)),
         "node" => named(Node::schema(schemas)),

@@ -1,0 +1,237 @@
+//! Triangles that follow a field within a tolerance: the place of the greatest error becomes a corner, again and again.
+//!
+//! Source: M. Garland and P. Heckbert, "Fast polygonal approximation of terrains and height fields", Carnegie Mellon
+//! University CMU-CS-95-181, 1995. Theirs looks at the samples; with `everywhere` the edges are looked at too, which
+//! proves the bound between the samples (see [`scan`](super::scan)), and corners may stand between samples.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use rayon::prelude::{
+    IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator,
+};
+
+use super::chain::{Chain, Side};
+use super::delaunay::{BORDER, Delaunay, Place, next};
+use super::lattice::Lattice;
+use super::scan::{Corner, Worst, edge, nodes};
+
+/// What is asked of the triangles.
+pub(super) struct Goal {
+    /// Greatest error, the lattice's slack already taken off.
+    pub(super) tolerance: f64,
+    /// Whether it holds between the nodes too.
+    pub(super) everywhere: bool,
+    /// Most triangles.
+    pub(super) limit: u64,
+}
+
+/// Triangles over a field.
+pub(super) struct Triangles {
+    pub(super) mesh: Delaunay,
+    pub(super) heights: Vec<f64>,
+    /// How far they are from the lattice's function, its borders left out; at the nodes alone, unless everywhere.
+    pub(super) error: f64,
+}
+
+/// A triangle in need of a corner.
+struct Need {
+    error: f64,
+    triangle: u32,
+    version: u32,
+    place: [f64; 2],
+}
+
+impl PartialEq for Need {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Need {}
+
+impl PartialOrd for Need {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Need {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let later = other.triangle.cmp(&self.triangle).then(other.version.cmp(&self.version));
+        self.error.total_cmp(&other.error).then(later)
+    }
+}
+
+struct Greedy<'l> {
+    lattice: &'l Lattice<'l>,
+    goal: &'l Goal,
+    made: Triangles,
+    versions: Vec<u32>,
+    errors: Vec<f64>,
+    needs: BinaryHeap<Need>,
+}
+
+/// Refines until the goal is met; where that would take more triangles than the limit, their number.
+pub(super) fn refine(lattice: &Lattice<'_>, chains: &[Chain; 4], goal: &Goal) -> Result<Triangles, u64> {
+    let mesh = Delaunay::new(lattice.far());
+    let heights = mesh.places.iter().map(|place| lattice.height(*place)).collect();
+    let made = Triangles { mesh, heights, error: 0.0 };
+    let mut greedy =
+        Greedy { lattice, goal, made, versions: Vec::new(), errors: Vec::new(), needs: BinaryHeap::new() };
+    greedy.draw_borders(chains);
+    let all: Vec<u32> = (0..greedy.made.mesh.triangles()).collect();
+    let found: Vec<Worst> = all.par_iter().with_min_len(16).map(|triangle| greedy.judge(*triangle)).collect();
+    greedy.versions.resize(all.len(), 0);
+    greedy.errors.resize(all.len(), 0.0);
+    for (triangle, worst) in all.into_iter().zip(found) {
+        greedy.note(triangle, worst);
+    }
+    greedy.run()?;
+    let mut made = greedy.made;
+    made.error = greedy.errors.into_iter().fold(0.0, f64::max);
+    Ok(made)
+}
+
+impl Greedy<'_> {
+    fn draw_borders(&mut self, chains: &[Chain; 4]) {
+        let scale = f64::from(self.lattice.units) * f64::from(self.lattice.refine);
+        for (side, chain) in Side::ALL.into_iter().zip(chains) {
+            let mut near = 0;
+            for along in &chain.steps {
+                let place = side.at(self.lattice.field, *along).map(|step| whole(step * scale));
+                if self.made.mesh.insert(place, near).is_some() {
+                    self.made.heights.push(self.lattice.height(place));
+                    near = self.made.mesh.changed[0];
+                }
+            }
+        }
+    }
+
+    fn run(&mut self) -> Result<(), u64> {
+        while let Some(need) = self.needs.pop() {
+            let at = need.triangle as usize;
+            if self.versions[at] != need.version {
+                continue;
+            }
+            if !self.insert(&need) {
+                // No place is left near by: what remains is told, and the caller tries a finer lattice.
+                self.errors[at] = need.error;
+                continue;
+            }
+            let count = self.made.mesh.triangles();
+            if u64::from(count) > self.goal.limit {
+                return Err(u64::from(count));
+            }
+            self.versions.resize(count as usize, 0);
+            self.errors.resize(count as usize, 0.0);
+            for k in 0..self.made.mesh.changed.len() {
+                let triangle = self.made.mesh.changed[k];
+                let worst = self.judge(triangle);
+                self.versions[triangle as usize] += 1;
+                self.note(triangle, worst);
+            }
+            if self.versions[at] == need.version {
+                // The new corner stands beside it and has changed others: the next try finds another place.
+                self.needs.push(need);
+            }
+        }
+        Ok(())
+    }
+
+    /// Sets a corner at or near the place that needs one.
+    fn insert(&mut self, need: &Need) -> bool {
+        let far = self.lattice.far();
+        // The border has its own corners already.
+        let inside = |place: Place| [0, 1].map(|k| place[k].clamp(1, far[k] - 1));
+        if far[0] < 2 || far[1] < 2 {
+            return false;
+        }
+        let middle = need.place.map(whole);
+        let around = [(0, 0), (1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
+        let near = around.map(|(dx, dy)| inside([middle[0] + dx, middle[1] + dy]));
+        let center = inside(self.center(need.triangle).map(whole));
+        for place in near.into_iter().chain([center]) {
+            if self.made.mesh.insert(place, need.triangle).is_some() {
+                self.made.heights.push(self.lattice.height(place));
+                return true;
+            }
+        }
+        false
+    }
+
+    /// The center of the circle through the corners of a triangle: inside of it stands no corner.
+    fn center(&self, triangle: u32) -> [f64; 2] {
+        let [a, b, c] = self.corners(triangle).map(|(place, _)| place.map(f64::from));
+        let (b, c) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
+        let twice = 2.0 * (b[0] * c[1] - b[1] * c[0]);
+        let (bb, cc) = (b[0] * b[0] + b[1] * b[1], c[0] * c[0] + c[1] * c[1]);
+        [a[0] + (c[1] * bb - b[1] * cc) / twice, a[1] + (b[0] * cc - c[0] * bb) / twice]
+    }
+
+    fn note(&mut self, triangle: u32, worst: Worst) {
+        if worst.error > self.goal.tolerance {
+            let version = self.versions[triangle as usize];
+            self.needs.push(Need { error: worst.error, triangle, version, place: worst.place });
+            self.errors[triangle as usize] = 0.0;
+        } else {
+            self.errors[triangle as usize] = worst.error;
+        }
+    }
+
+    fn corners(&self, triangle: u32) -> [Corner; 3] {
+        self.made.corners(triangle)
+    }
+
+    /// The greatest error of a triangle: at the nodes first, since a node is the better corner.
+    fn judge(&self, triangle: u32) -> Worst {
+        let worst = nodes(self.lattice, self.corners(triangle));
+        if !self.goal.everywhere || worst.error > self.goal.tolerance {
+            return worst;
+        }
+        let along = self.made.along_edges(self.lattice, triangle);
+        if along.error > worst.error { along } else { worst }
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "saturates; places are clamped into the lattice")]
+fn whole(number: f64) -> i32 {
+    number.round() as i32
+}
+
+impl Triangles {
+    pub(super) fn corners(&self, triangle: u32) -> [Corner; 3] {
+        self.mesh.corners_of(triangle).map(|corner| {
+            let at = corner as usize;
+            (self.mesh.places[at], self.heights[at])
+        })
+    }
+
+    /// The greatest error along the edges of a triangle that have a triangle beyond.
+    fn along_edges(&self, lattice: &Lattice<'_>, triangle: u32) -> Worst {
+        let mut worst = Worst::NONE;
+        for side in 3 * triangle..3 * triangle + 3 {
+            if self.mesh.beyond(side) == BORDER {
+                continue;
+            }
+            let [from, to] = [side, next(side)].map(|side| {
+                let corner = self.mesh.corners[side as usize] as usize;
+                (self.mesh.places[corner], self.heights[corner])
+            });
+            let found = edge(lattice, from, to);
+            if found.error > worst.error {
+                worst = found;
+            }
+        }
+        worst
+    }
+
+    /// The greatest error everywhere but at the border, measured anew.
+    pub(super) fn measure(&self, lattice: &Lattice<'_>) -> f64 {
+        let of = |triangle: u32| {
+            let inside = nodes(lattice, self.corners(triangle)).error;
+            inside.max(self.along_edges(lattice, triangle).error)
+        };
+        (0..self.mesh.triangles()).into_par_iter().with_min_len(256).map(of).reduce(|| 0.0, f64::max)
+    }
+}

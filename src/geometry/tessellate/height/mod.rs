@@ -1,0 +1,222 @@
+//! Height maps: a field over a rectangle as triangles, open or closed.
+//!
+//! Promise: every point of the triangles is vertically within the tolerance of the interpolated field, and the other way
+//! round; the bound is proved (see [`scan`] and [`lattice`]). Borders depend on their own samples, the size and the
+//! tolerance alone, so neighbouring maps that share a row of samples meet without a crack. A closed map is closed by its
+//! points, not by nearness. Not promised: equal normals on both sides of such a seam.
+
+mod chain;
+mod close;
+mod delaunay;
+mod dense;
+mod greedy;
+mod lattice;
+mod scan;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessellation};
+use crate::geometry::map::{GridField, Interpolation};
+use crate::geometry::mesh;
+use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+use chain::Side;
+use close::close;
+use delaunay::{BORDER, next};
+use greedy::{Goal, Triangles, refine};
+use lattice::Lattice;
+
+/// A field of heights over a rectangle in the x, z plane about the origin: columns go to +x, rows to +z.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeightMap {
+    /// Heights along y, metres.
+    pub field: Arc<GridField>,
+    /// Lengths along x and z, metres.
+    pub size: DVec2,
+    /// Where the tolerance holds.
+    pub bound: HeightBound,
+    /// How it is closed.
+    pub close: Closing,
+}
+
+/// Where the tolerance of a height map holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeightBound {
+    /// Everywhere.
+    Surface,
+    /// At the samples of the map.
+    Samples,
+    /// Every sample becomes a corner, whatever the tolerance.
+    Dense,
+}
+
+/// How a height map is closed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Closing {
+    /// It stays a sheet.
+    None,
+    /// By walls down to a flat base at this height.
+    Base(f64),
+    /// By a second sheet this far below.
+    Thickness(f64),
+}
+
+impl HeightMap {
+    /// The point over a place in steps of the field.
+    #[must_use]
+    pub fn point(&self, [x, y]: [f64; 2], height: f64) -> DVec3 {
+        let [right, bottom] = self.field.extent();
+        // Symmetric to the last bit.
+        let place = (DVec2::new(x / right, y / bottom) * 2.0 - 1.0) * self.size / 2.0;
+        DVec3::new(place.x, height, place.y)
+    }
+
+    /// The place under a point, in steps of the field; outside of the map too.
+    #[must_use]
+    pub fn place(&self, point: DVec3) -> [f64; 2] {
+        let part = DVec2::new(point.x, point.z) / self.size + 0.5;
+        let [right, bottom] = self.field.extent();
+        [part.x * right, part.y * bottom]
+    }
+
+    /// Derivatives of the height along x and z for a place in steps.
+    #[must_use]
+    pub fn slopes(&self, [x, y]: [f64; 2]) -> DVec2 {
+        let [right, bottom] = self.field.extent();
+        let jet = self.field.jet(x, y);
+        DVec2::new(jet.dx * right, jet.dy * bottom) / self.size
+    }
+
+    fn normal(&self, place: [f64; 2]) -> DVec3 {
+        let slopes = self.slopes(place);
+        DVec3::new(-slopes.x, 1.0, -slopes.y).normalize()
+    }
+}
+
+/// Makes the triangles. Texture coordinates run over the map as over a flat plane: u along x, v along z. Anchor sources:
+/// 0 the surface, in steps of the field; 1 walls and base; 2 the lower sheet of a thick map.
+///
+/// Cost: samples times the logarithm of triangles, with a small factor; dense: linear.
+///
+/// # Errors
+/// When a limit would be passed, or the surface reaches below its base.
+pub fn height_map(
+    shape: &HeightMap,
+    detail: &Detail,
+    tolerance: f64,
+) -> Result<Tessellation, TessellateError> {
+    let SurfaceDensity::Tolerance(aim) = detail.density else {
+        return dense::dense(shape, detail);
+    };
+    match shape.bound {
+        HeightBound::Dense => dense::dense(shape, detail),
+        HeightBound::Samples | HeightBound::Surface => adaptive(shape, detail, aim, tolerance),
+    }
+}
+
+/// Share of the tolerance for borders, which must not depend on what a part of it is kept for. An edge inside that runs
+/// just beside a border joins heights that are off by the border's error either way, so it may be off by twice as much:
+/// with less than half of the tolerance corners do not crowd there. The slack of a spline's lattice counts as well.
+fn border_tolerance(field: &GridField, aim: f64, tolerance: f64) -> f64 {
+    let share = match field.interpolation() {
+        Interpolation::Bilinear => 7.0 / 16.0,
+        Interpolation::Bicubic => 1.0 / 4.0,
+    };
+    if aim >= tolerance * 15.0 / 16.0 { tolerance * share } else { tolerance * share / 2.0 }
+}
+
+fn adaptive(
+    shape: &HeightMap,
+    detail: &Detail,
+    aim: f64,
+    tolerance: f64,
+) -> Result<Tessellation, TessellateError> {
+    /// Finer lattices that are tried where corners find no place.
+    const ATTEMPTS: i32 = 4;
+    let field = &*shape.field;
+    let too_many = |needed| TessellateError::TooMany { needed, limit: detail.triangle_limit };
+    let everywhere = shape.bound == HeightBound::Surface;
+    let border = border_tolerance(field, aim, tolerance);
+    let mut attempt = 0;
+    loop {
+        let lattice = if everywhere {
+            Lattice::fine(field, aim, 1 << attempt, detail.triangle_limit.saturating_mul(8))
+                .map_err(too_many)?
+        } else {
+            Lattice::coarse(field)
+        };
+        // A border is cut about as finely as the lattice, which was allowed.
+        let chains = Side::ALL.map(|side| {
+            if everywhere { side.chain(field, border) } else { side.sampled_chain(field, border) }
+        });
+        let along = chains.iter().map(|chain| chain.bound).fold(0.0, f64::max);
+        let lattice = lattice.holding(&chains).map_err(too_many)?;
+        let slack = if everywhere { lattice.slack } else { 0.0 };
+        let goal = Goal { tolerance: aim - slack, everywhere, limit: detail.triangle_limit };
+        let made = refine(&lattice, &chains, &goal).map_err(too_many)?;
+        if everywhere && made.error > goal.tolerance && attempt < ATTEMPTS {
+            attempt += 1;
+            continue;
+        }
+        let inside = if everywhere { made.error } else { made.measure(&lattice) };
+        // Points on the border are as far from the lattice's function as from the field, and its slack more.
+        let bound = (inside + lattice.slack).max(along + 2.0 * lattice.slack);
+        return finish(shape, detail, &lattice, &made, bound);
+    }
+}
+
+fn finish(
+    shape: &HeightMap,
+    detail: &Detail,
+    lattice: &Lattice<'_>,
+    made: &Triangles,
+    bound: f64,
+) -> Result<Tessellation, TessellateError> {
+    let mut sheet = Mesh::default();
+    for (place, height) in made.mesh.places.iter().zip(&made.heights) {
+        push(shape, &mut sheet, lattice.steps(*place), *height, detail.uv);
+    }
+    let triangles = 0..made.mesh.triangles();
+    sheet.triangles = triangles.map(|triangle| up(made.mesh.corners_of(triangle))).collect();
+    close(shape, sheet, &rims(made), detail).map(|mesh| tessellation(mesh, bound))
+}
+
+/// A corner of the surface.
+fn push(shape: &HeightMap, sheet: &mut Mesh, steps: [f64; 2], height: f64, uv: bool) {
+    let point = PointIndex(mesh::index(sheet.points.len()));
+    sheet.points.push(shape.point(steps, height));
+    let [right, bottom] = shape.field.extent();
+    let uv = if uv { DVec2::new(steps[0] / right, steps[1] / bottom) } else { DVec2::ZERO };
+    let anchor = Anchor { source: 0, u: steps[0], v: steps[1] };
+    sheet.vertices.push(Vertex { point, normal: shape.normal(steps), uv, anchor });
+}
+
+/// Corners that turn counter-clockwise over columns and rows look down; this looks up.
+fn up([a, b, c]: [u32; 3]) -> [VertexIndex; 3] {
+    [VertexIndex(a), VertexIndex(c), VertexIndex(b)]
+}
+
+/// The loops of corners around the triangles, with these to the left over columns and rows.
+fn rims(made: &Triangles) -> Vec<Vec<u32>> {
+    let mut after = vec![BORDER; made.mesh.places.len()];
+    let sides = mesh::index(made.mesh.corners.len());
+    for side in (0..sides).filter(|side| made.mesh.beyond(*side) == BORDER) {
+        after[made.mesh.corners[side as usize] as usize] = made.mesh.corners[next(side) as usize];
+    }
+    let mut ring = vec![0];
+    let mut at = after[0];
+    while at != 0 {
+        ring.push(at);
+        at = after[at as usize];
+    }
+    vec![ring]
+}
+
+fn tessellation(mut mesh: Mesh, bound: f64) -> Tessellation {
+    mesh.runs = vec![Run { origin: 0, end: mesh::index(mesh.triangles.len()) }];
+    let evidence = if bound == 0.0 { Evidence::Exact } else { Evidence::Proved };
+    Tessellation { mesh, deviation: Deviation { bound, evidence } }
+}

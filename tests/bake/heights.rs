@@ -1,0 +1,161 @@
+//! Height maps: closed, of the volume of their field, the same whatever file they come from, seamless as tiles.
+
+use kiln::compile::Options;
+use kiln::language::Document;
+use kiln::language::source::MemoryFiles;
+
+use super::glb::Glb;
+use super::{Baked, assert_near, bake};
+
+fn bake_beside(text: &str, files: MemoryFiles) -> Baked {
+    let files = files.with("spec.toml", text);
+    let document = Document::load("spec.toml", &files).unwrap_or_else(|found| panic!("{found}"));
+    let options = Options { name: "asset".to_owned(), measure: true, ..Options::default() };
+    let compiled =
+        kiln::compile(&document, &files, &options).unwrap_or_else(|found| panic!("{found}\n{text}"));
+    Baked { glb: Glb::new(&compiled.bytes), compiled }
+}
+
+/// A field with the integral of a closed form: x^2 y over the unit square, by a spline, which reproduces cubics.
+const CUBIC: &str = "[map.m]
+interpolation = \"bicubic\"
+[map.m.formula]
+f = \"= x ^ 2 * y\"
+columns = 9
+rows = 7
+";
+
+#[test]
+fn a_closed_map_has_the_volume_of_its_field() {
+    for tolerance in ["0.01", "0.001", "0.0001"] {
+        let text = format!(
+            "tolerance = {tolerance}\n{CUBIC}[shape.a.height-map]\nmap = \"m\"\nsize = [2, 3]\nrange = [1, 2]\nclose = \"base\""
+        );
+        let baked = bake(&text);
+        let facts = baked.only();
+        assert!(facts.facts.closed);
+        assert_eq!(facts.facts.genus, Some(0));
+        let volume = facts.facts.volume.expect("closed");
+        let tolerance: f64 = tolerance.parse().unwrap();
+        // The integral of 1 + x^2 y over the unit square is 7/6.
+        assert!((volume - 7.0).abs() <= 1e-6 * 7.0 + tolerance * 6.0, "{volume}");
+        let deviation = &facts.deviation;
+        assert!(
+            deviation.bound <= tolerance && deviation.measured.is_some_and(|found| found <= deviation.bound)
+        );
+    }
+}
+
+#[test]
+fn a_thick_map_has_the_volume_of_a_plate() {
+    let text = format!(
+        "tolerance = 0.001\n{CUBIC}[shape.a.height-map]\nmap = \"m\"\nsize = [2, 3]\nclose = \"thickness\"\ndepth = 0.25"
+    );
+    let baked = bake(&text);
+    let facts = &baked.only().facts;
+    assert!(facts.closed && facts.genus == Some(0));
+    assert_near(facts.volume.expect("closed"), 1.5, 1e-6);
+}
+
+#[test]
+fn one_grid_from_four_kinds_of_file_is_one_mesh() {
+    let numbers = [3_u8, 1, 4, 1, 5, 9, 2, 6, 5, 3, 5, 8];
+    let rows: Vec<String> = numbers.chunks(4).map(|row| format!("{row:?}")).collect();
+    let words: Vec<String> = numbers.iter().map(ToString::to_string).collect();
+    let asc = format!("ncols 4\nnrows 3\ncellsize 30\n{}\n", words.join(" "));
+    let raw: Vec<u8> = numbers.iter().flat_map(|number| f32::from(*number).to_le_bytes()).collect();
+    let mut png = Vec::new();
+    let mut encoder = png::Encoder::new(&mut png, 4, 3);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Sixteen);
+    let pixels: Vec<u8> = numbers.iter().flat_map(|number| u16::from(*number).to_be_bytes()).collect();
+    encoder.write_header().unwrap().write_image_data(&pixels).unwrap();
+    let files = || {
+        let files = MemoryFiles::new().with("a.asc", asc.as_str()).with("a.raw", raw.as_slice());
+        files.with("a.png", png.as_slice())
+    };
+    let kinds = [
+        (format!("grid = {{ rows = [{}] }}", rows.join(", ")), "[0, 1]"),
+        ("grid = { file = \"a.asc\" }".to_owned(), "[0, 1]"),
+        ("raw = { file = \"a.raw\", columns = 4, rows = 3, number = \"f32\" }".to_owned(), "[0, 1]"),
+        ("image = { file = \"a.png\" }".to_owned(), "[0, 65535]"),
+    ];
+    let baked: Vec<Baked> = kinds
+        .iter()
+        .map(|(kind, range)| {
+            let text = format!(
+                "tolerance = 0.01\n[shape.a.height-map]\nmap = {{ {kind} }}\nsize = [3, 2]\nrange = {range}\nclose = \"base\""
+            );
+            bake_beside(&text, files())
+        })
+        .collect();
+    for other in &baked[1..] {
+        assert_eq!(other.compiled.bytes, baked[0].compiled.bytes);
+    }
+    let bounds = baked[0].only().facts.bounds.expect("points");
+    assert_eq!((bounds.min, bounds.max), ([-1.5, 0.0, -1.0], [1.5, 9.0, 1.0]));
+}
+
+#[test]
+fn tiles_meet_to_the_last_bit() {
+    let tile = |from: f64, at: f64| {
+        format!(
+            "[map.m]\ninterpolation = \"bicubic\"\n[map.m.formula]\nf = \"= sin(x * 200) * cos(y * 170) + 0.2 * noise(3, x * 9, y * 9)\"\n\
+             from = [{from}, 0]\nto = [{}, 1]\ncolumns = 33\nrows = 33\n[shape.a]\nat = [{at}, 0, 0]\ntolerance = 0.01\n\
+             [shape.a.height-map]\nmap = \"m\"\nsize = [4, 4]",
+            from + 1.0
+        )
+    };
+    let border = |text: &str, x: f64| {
+        let baked = bake(text);
+        let mesh = &baked.glb.mesh(0);
+        let mut points: Vec<[u64; 3]> = mesh
+            .positions
+            .iter()
+            .filter(|point| point[0] == x)
+            .map(|point| point.map(f64::to_bits))
+            .collect();
+        points.sort_unstable();
+        points.dedup();
+        points
+    };
+    let (left, right) = (border(&tile(0.0, 6.0), 8.0), border(&tile(1.0, 10.0), 8.0));
+    assert!(left.len() > 8);
+    assert_eq!(left, right);
+}
+
+#[test]
+fn where_the_ground_is_flat_there_are_few_triangles() {
+    let text = "tolerance = 0.001\n[shape.a.height-map]\nmap = { formula = { f = \"= max(0, x - 0.75)\", columns = 65, rows = 65 } }\nsize = [1, 1]";
+    assert_eq!(bake(text).only().facts.triangles, 4);
+}
+
+#[test]
+fn dense_maps_keep_every_sample() {
+    let text = "[shape.a.height-map]\nmap = { noise = { columns = 20, rows = 13 } }\nsize = [1, 1]\nbound = \"dense\"";
+    let baked = bake(text);
+    assert_eq!(baked.only().facts.triangles, 2 * 19 * 12);
+    assert_eq!(baked.only().deviation.tolerance, None);
+}
+
+/// Real ground: the elevation grid of the Jacksboro fault, from a folder outside of the repository.
+#[test]
+#[expect(clippy::print_stdout, reason = "a test that does not run must say so")]
+fn real_ground_within_its_tolerance() {
+    use std::io::Read as _;
+    let Some(folder) = std::env::var_os("KILN_CASES") else {
+        println!("KILN_CASES is not set: real ground not tried");
+        return;
+    };
+    let packed = std::fs::read(std::path::Path::new(&folder).join("height/jacksboro_fault.asc.gz"))
+        .expect("it is there");
+    let mut grid = String::new();
+    flate2::read::GzDecoder::new(packed.as_slice()).read_to_string(&mut grid).expect("text");
+    let files = MemoryFiles::new().with("ground.asc", grid);
+    let text = "tolerance = 20\n[shape.a.height-map]\nmap = { grid = { file = \"ground.asc\" } }\nsize = [30, 30]\nclose = \"base\"";
+    let baked = bake_beside(text, files);
+    let facts = baked.only();
+    assert!(facts.facts.closed && facts.deviation.bound <= 20.0);
+    assert!(facts.facts.triangles < 344 * 403 / 2);
+    assert!(facts.deviation.measured.is_some_and(|found| found <= facts.deviation.bound));
+}

@@ -1,0 +1,159 @@
+"""Height maps: the field by scipy, the greatest distance of the written mesh from it, volumes, real ground."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from scipy.interpolate import RectBivariateSpline, RegularGridInterpolator
+
+from conftest import cases_folder
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from kiln import Baked, Kiln
+
+    Field = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]
+
+PLACES_IN_A_CELL = 16
+
+
+def field_of(heights: NDArray[np.float64], interpolation: str) -> Field:
+    """The interpolated field of a grid by scipy; x counts columns, y counts rows."""
+    rows, columns = (np.arange(count, dtype=float) for count in heights.shape)
+    if interpolation == "bicubic":
+        spline = RectBivariateSpline(rows, columns, heights, kx=3, ky=3, s=0)
+        return lambda x, y: spline.ev(y, x)
+    linear = RegularGridInterpolator((rows, columns), heights)
+    return lambda x, y: linear(np.stack([y, x], axis=-1))
+
+
+def error(baked: Baked, field: Field, shape: tuple[int, int], size: tuple[float, float]) -> float:
+    """The greatest vertical distance of the sheet from the field, at sixteen places in each cell of the grid."""
+    points, triangles = baked.mesh("a")
+    rows, columns = shape
+    place = np.stack(
+        [(points[:, 0] / size[0] + 0.5) * (columns - 1), (points[:, 2] / size[1] + 0.5) * (rows - 1)], axis=1
+    )
+    worst = 0.0
+    for corners in triangles:
+        flat, heights = place[corners], points[corners, 1]
+        edges = flat[1:] - flat[0]
+        twice = edges[0, 0] * edges[1, 1] - edges[0, 1] * edges[1, 0]
+        assert twice < 0, "the sheet looks up"
+        low, high = flat.min(axis=0), flat.max(axis=0)
+        steps = math.sqrt(PLACES_IN_A_CELL)
+        # The corners of quarters of cells, and so the nodes too.
+        x = np.arange(math.ceil(low[0] * steps - 1e-6), math.floor(high[0] * steps + 1e-6) + 1) / steps
+        y = np.arange(math.ceil(low[1] * steps - 1e-6), math.floor(high[1] * steps + 1e-6) + 1) / steps
+        grid = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        away = grid - flat[0]
+        s = (away[:, 0] * edges[1, 1] - away[:, 1] * edges[1, 0]) / twice
+        t = (edges[0, 0] * away[:, 1] - edges[0, 1] * away[:, 0]) / twice
+        inside = (s >= -1e-7) & (t >= -1e-7) & (s + t <= 1 + 1e-7)
+        along = np.linspace(0, 1, 9)
+        s = np.concatenate([s[inside], along, 0 * along, 1 - along])
+        t = np.concatenate([t[inside], 0 * along, along, along])
+        at = flat[0] + s[:, None] * edges[0] + t[:, None] * edges[1]
+        over = heights[0] + s * (heights[1] - heights[0]) + t * (heights[2] - heights[0])
+        at = np.clip(at, 0, [columns - 1, rows - 1])
+        worst = max(worst, float(np.abs(field(at[:, 0], at[:, 1]) - over).max()))
+    return worst
+
+
+def hills(rows: int, columns: int, seed: int) -> NDArray[np.float64]:
+    """Smooth ground with a little chance in it."""
+    chance = np.random.default_rng(seed)
+    y, x = np.mgrid[:rows, :columns] / 7.0
+    return np.round(np.sin(x) * np.cos(1.3 * y) + 0.05 * chance.normal(size=(rows, columns)), 6)
+
+
+@pytest.mark.parametrize("interpolation", ["bilinear", "bicubic"])
+@pytest.mark.parametrize("tolerance", [0.2, 0.02, 0.002])
+def test_the_mesh_is_within_its_tolerance_of_scipys_field(kiln: Kiln, interpolation: str, tolerance: float) -> None:
+    heights, size = hills(19, 26, seed=4), (5.0, 3.6)
+    baked = kiln.bake(
+        f'tolerance = {tolerance}\n[map.m]\ninterpolation = "{interpolation}"\n'
+        f"[map.m.grid]\nrows = {heights.tolist()}\n"
+        f'[shape.a.height-map]\nmap = "m"\nsize = {list(size)}\n'
+    )
+    found = error(baked, field_of(heights, interpolation), heights.shape, size)
+    # Single precision moves points sideways too, on slopes of up to 10.
+    assert found <= tolerance + 1e-5
+    assert found <= baked.shape("a")["deviation"]["bound"] * 1.0001 + 1e-5
+    assert found > tolerance / 8, "far more triangles than are needed"
+
+
+def test_samples_are_met_where_samples_are_asked_for(kiln: Kiln) -> None:
+    heights, size = hills(31, 40, seed=8), (4.0, 3.0)
+    baked = kiln.bake(
+        f"tolerance = 0.03\n[map.m.grid]\nrows = {heights.tolist()}\n"
+        f'[shape.a.height-map]\nmap = "m"\nsize = {list(size)}\nbound = "samples"\n'
+    )
+    points, triangles = baked.mesh("a")
+    place = np.stack([(points[:, 0] / size[0] + 0.5) * 39, (points[:, 2] / size[1] + 0.5) * 30], axis=1).round(4)
+    assert np.array_equal(place, place.round()), "corners are samples"
+    met = np.zeros(heights.shape, bool)
+    for corners in triangles:
+        flat, over = place[corners], points[corners, 1]
+        edges = (flat[1:] - flat[0]).T
+        low, high = flat.min(axis=0).astype(int), flat.max(axis=0).astype(int)
+        for y in range(low[1], high[1] + 1):
+            for x in range(low[0], high[0] + 1):
+                s, t = np.linalg.solve(edges, np.array([x, y]) - flat[0])
+                if min(s, t) >= -1e-9 and s + t <= 1 + 1e-9:
+                    height = over[0] + s * (over[1] - over[0]) + t * (over[2] - over[0])
+                    assert abs(height - heights[y, x]) <= 0.03 + 1e-5
+                    met[y, x] = True
+    assert met.all()
+
+
+@pytest.mark.parametrize("interpolation", ["bilinear", "bicubic"])
+def test_a_closed_map_has_the_volume_of_scipys_integral(kiln: Kiln, interpolation: str) -> None:
+    heights, size, tolerance = hills(14, 17, seed=2), (3.2, 2.6), 1e-3
+    baked = kiln.bake(
+        f'tolerance = {tolerance}\n[map.m]\ninterpolation = "{interpolation}"\n'
+        f"[map.m.grid]\nrows = {heights.tolist()}\n"
+        f'[shape.a.height-map]\nmap = "m"\nsize = {list(size)}\nclose = "base"\nbase = -2\n'
+    )
+    y, x = np.arange(14.0), np.arange(17.0)
+    degree = 3 if interpolation == "bicubic" else 1
+    spline = RectBivariateSpline(y, x, heights, kx=degree, ky=degree, s=0)
+    mean = spline.integral(0, 13, 0, 16) / (13 * 16)
+    area = size[0] * size[1]
+    facts = baked.shape("a")
+    assert facts["closed"]
+    assert facts["genus"] == 0
+    assert abs(facts["volume"] - area * (mean + 2)) <= 1e-6 * area * (mean + 2) + tolerance * area
+
+
+@pytest.mark.cases
+@pytest.mark.parametrize("name", ["maunga_whau_volcano", "west_bijou_escarpment"])
+def test_real_ground_from_pictures_and_grids(kiln: Kiln, name: str) -> None:
+    folder = cases_folder()
+    assert folder is not None
+    source = folder / "height" / f"{name}.asc"
+    text = source.read_text(encoding="ascii")
+    numbers = [line for line in text.splitlines() if not line[:1].isalpha()]
+    heights = np.array(" ".join(numbers).split(), float)
+    header = dict(line.lower().split() for line in text.splitlines() if line[:1].isalpha())
+    heights = heights.reshape(int(header["nrows"]), int(header["ncols"]))
+    (kiln.folder / "ground.asc").write_text(text, encoding="ascii")
+    size = (float(heights.shape[1] - 1), float(heights.shape[0] - 1))
+    spec = (
+        'tolerance = 2\n[shape.a.height-map]\nmap = {{ {kind} = {{ file = "{file}" }} }}\n'
+        "size = {size}\nrange = {range}\n"
+    )
+    grid = kiln.bake(spec.format(kind="grid", file="ground.asc", size=list(size), range=[0, 1]))
+    assert error(grid, field_of(heights, "bilinear"), heights.shape, size) <= 2.001
+    picture = folder / "height" / f"{name}_16.png"
+    (kiln.folder / "ground.png").write_bytes(picture.read_bytes())
+    low, high = float(heights.min()), float(heights.max())
+    grey = kiln.bake(spec.format(kind="image", file="ground.png", size=list(size), range=[low, high]), name="grey")
+    # The picture rounds to 65535 steps of the range.
+    assert error(grey, field_of(heights, "bilinear"), heights.shape, size) <= 2.001 + (high - low) / 65535
