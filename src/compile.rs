@@ -7,7 +7,7 @@ use notice::noticed;
 use crate::build::{self, Built};
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::number::{Bounds, single_rounding};
-use crate::geometry::tessellate::{Evidence, TessellateError};
+use crate::geometry::tessellate::{DeformError, Evidence, TessellateError};
 use crate::language::Document;
 use crate::language::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::language::source::{Files, Span};
@@ -157,6 +157,16 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
         }
         RealizeError::Tessellate(TessellateError::BelowBase { .. }) => {
             (Code::BelowBase, "write a lower `base`, or raise the heights with `range`")
+        }
+        RealizeError::Deform(DeformError::Folds { .. }) => (
+            Code::FoldsOver,
+            "bend less, or over a greater length, or a thinner shape; `around` moves the axis",
+        ),
+        RealizeError::Deform(DeformError::TooLong { .. }) => {
+            (Code::LongerThanPath, "write `stretch = true`, another `from`, or a longer path")
+        }
+        RealizeError::Deform(_) => {
+            (Code::NoLength, "write another `axis`, or `from` and `to` inside the shape")
         }
         RealizeError::Polygons(_) => (Code::BadMesh, "check the indices of the faces"),
     };

@@ -4,6 +4,7 @@
 
 mod accuracy;
 mod coons;
+mod deformations;
 mod determinism;
 mod document;
 mod drawings;

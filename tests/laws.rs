@@ -1,6 +1,7 @@
 //! Laws that hold for every curve and every surface, whatever its kind: reusable, seeded, stated once.
 
 mod curves;
+mod deformations;
 mod equations;
 mod patches;
 mod surfaces;

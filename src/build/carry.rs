@@ -9,25 +9,30 @@ use crate::geometry::number::{acos, cos_degrees};
 use crate::geometry::surface::{Carry, FrameRule};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
-use crate::language::spec::{Frame, Sweep, Up};
+use crate::language::spec::{CurveReference, Frame, Sp, Up};
 
 /// A path that comes nearer than this many degrees to `up` is taken to run along it: the section would spin.
 const NEAREST: f64 = 1.0;
 
 impl Builder<'_> {
-    /// The rule of a sweep's frames, which its path must suit.
-    pub(super) fn carry(&mut self, sweep: &Sweep, path: &AnyCurve) -> Option<Carry> {
-        let rule = match sweep.frame.value {
+    /// The rule of frames, and the direction of `up`, which the path must suit.
+    pub(super) fn carry(
+        &mut self,
+        (frame, up): (&Sp<Frame>, Option<&Sp<DVec3>>),
+        (path, place): (&AnyCurve, &CurveReference),
+        twist: f64,
+    ) -> Option<Carry> {
+        let rule = match frame.value {
             Frame::RotationMinimizing => FrameRule::RotationMinimizing,
             Frame::Frenet => FrameRule::Frenet,
             Frame::Up => {
                 let own = if self.spec.up == Up::Z { DVec3::Z } else { DVec3::Y };
-                let (up, span) = sweep.up.map_or((own, sweep.frame.span), |up| (up.value, up.span));
-                self.check_up(up.normalize(), span, (path, sweep.path.span()))?;
+                let (up, span) = up.map_or((own, frame.span), |up| (up.value, up.span));
+                self.check_up(up.normalize(), span, (path, place.span()))?;
                 FrameRule::Up(up)
             }
         };
-        Some(Carry { rule, twist: sweep.twist.value })
+        Some(Carry { rule, twist })
     }
 
     fn check_up(&mut self, up: DVec3, span: Span, (path, place): (&AnyCurve, Span)) -> Option<()> {

@@ -10,6 +10,7 @@ mod carry;
 mod conic;
 mod coons;
 mod curve;
+mod deform;
 mod extrude;
 mod formula;
 mod formula_curve;

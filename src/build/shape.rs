@@ -24,6 +24,7 @@ impl Builder<'_> {
         handle
     }
 
+    /// The shape that a field asks for.
     pub(super) fn shape_of(
         &mut self,
         user: &str,
@@ -119,6 +120,10 @@ impl Builder<'_> {
             Kind::HeightMap(map) => self.height_map(map, &definition.options).map(here),
             Kind::Mesh(mesh) => self.mesh(mesh, span).map(here),
             Kind::Import(import) => self.import(import, span).map(here),
+            Kind::Taper(taper) => self.taper(name, taper).map(here),
+            Kind::Twist(twist) => self.twist(name, twist).map(here),
+            Kind::Bend(bend) => self.bend(name, bend).map(here),
+            Kind::Along(along) => self.along(name, along).map(here),
             Kind::Copy(copy) => {
                 let of = self.shape_of(name, 0, &copy.of)?;
                 Some(here(Recipe::Assembly(vec![(of, DAffine3::IDENTITY)])))

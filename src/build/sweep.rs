@@ -41,7 +41,7 @@ impl Builder<'_> {
             self.check_holes(outline, &holes.iter().collect::<Vec<_>>())?;
         }
         self.check_path(&path, sweep.path.span())?;
-        let carry = self.carry(sweep, &path)?;
+        let carry = self.carry((&sweep.frame, sweep.up.as_ref()), (&path, &sweep.path), sweep.twist.value)?;
         let smooth = sweep.blend.value == Blend::Smooth;
         let change = Change::new(profiles.stations.clone(), smooth, scale);
         self.check_seam(sweep, (&profiles, &holes), (&path, &carry), &change)?;

@@ -4,9 +4,11 @@
 //! the text it came from; handles always point at what exists, and a recipe refers only to shapes before it,
 //! so there is no cycle. Lengths are in the document's unit; [`Model::frame`] turns and scales them to glTF.
 
+mod deform;
 mod material;
 mod shape;
 
+pub use deform::{AxialBending, Bending, PathBending};
 pub use material::{
     AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, Texture, Wrap,
 };

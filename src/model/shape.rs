@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec2, DVec3};
 
-use super::MaterialHandle;
+use super::{Bending, MaterialHandle};
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::tessellate::{
@@ -65,6 +65,13 @@ pub enum Recipe {
         mesh: PolygonMesh,
         /// For each entry of [`PolygonMesh::materials`].
         materials: Vec<Option<MaterialHandle>>,
+    },
+    /// Another shape under a map that bends.
+    Deformed {
+        /// The shape.
+        of: ShapeHandle,
+        /// The map.
+        by: Bending,
     },
     /// Other shapes, each under maps; more than one map makes as many copies.
     Assembly(Vec<(ShapeHandle, DAffine3)>),

@@ -4,10 +4,15 @@
 //! every part of it, after all maps; the limits hold before memory is taken. Not promised: that a shape is
 //! closed; the report measures that.
 
+mod bent;
+mod cloud;
+mod deformation;
+mod facets;
 mod height;
 mod limit;
 mod nearest;
 mod node;
+mod reach;
 mod shape;
 mod source;
 mod swept;
@@ -17,7 +22,7 @@ pub use source::{Source, Sources, Window, sources};
 use thiserror::Error;
 
 use crate::geometry::mesh::polygon::PolygonError;
-use crate::geometry::tessellate::TessellateError;
+use crate::geometry::tessellate::{DeformError, TessellateError};
 use crate::model::{Model, ShapeHandle};
 use crate::scene::Scene;
 
@@ -37,6 +42,9 @@ pub enum RealizeError {
     /// The polygons are no mesh.
     #[error(transparent)]
     Polygons(#[from] PolygonError),
+    /// A map that bends the shape cannot be applied.
+    #[error(transparent)]
+    Deform(DeformError),
     /// More vertices or bytes than allowed.
     #[error("this would make at least {needed} {what}, and the limit is {limit}")]
     Limit {

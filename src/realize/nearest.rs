@@ -245,3 +245,10 @@ impl Field {
         best
     }
 }
+
+/// After which parameters u and v of a surface come round again; infinite where they do not.
+pub(super) fn periods(surface: &AnySurface) -> (f64, f64) {
+    let field = Field::new(surface);
+    let round = |closed: bool, domain: Domain| if closed { domain.span() } else { f64::INFINITY };
+    (round(field.closed.0, field.u), round(field.closed.1, field.v))
+}

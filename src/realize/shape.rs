@@ -3,15 +3,17 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::limit::{self, Cost};
-use super::source::source_count;
+use super::reach::bent;
+use super::source::{Extents, source_count};
 use super::{Faces, Note, Options, RealizeError};
 use crate::geometry::mesh;
 use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
 use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex, Wire};
 use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::{
-    Detail, Deviation, HeightBound, SurfaceDensity, TessellateError, Tessellation, cuboid, extrude, geodesic,
-    height_map, patchwork, plane, quadric, revolve, rounded_box, sheet, sweep, trimmed, wire,
+    DeformError, Deformed, Detail, Deviation, HeightBound, SurfaceDensity, TessellateError, Tessellation,
+    cuboid, deform, extrude, geodesic, height_map, patchwork, plane, quadric, revolve, rounded_box, sheet,
+    sweep, trimmed, wire,
 };
 use crate::model::{Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing, UvMode};
 
@@ -32,8 +34,8 @@ pub(super) struct Made {
 pub(super) struct Maker<'a> {
     model: &'a Model,
     coarser: f64,
-    /// The box of each shape, its placement applied.
-    extents: Vec<Bounds>,
+    /// How far each shape reaches.
+    extents: Extents,
     /// Triangles that each shape has at least.
     least: Vec<u64>,
 }
@@ -74,7 +76,7 @@ impl<'a> Maker<'a> {
             return Err(limit::in_terms_of(least, &self.model.limits));
         }
         let mut first_source = 0;
-        let rounding = single_rounding(self.extents[handle.0 as usize].reach());
+        let rounding = single_rounding(self.extents.bounds(handle).reach());
         self.part(handle, Inherited { tolerance: self.model.tolerance, rounding, uv }, &mut first_source)
     }
 
@@ -90,6 +92,9 @@ impl<'a> Maker<'a> {
         let mut made = match &shape.recipe {
             Recipe::Assembly(parts) => {
                 self.assembly(parts, wanted.within(&shape.options.placement), next_source)?
+            }
+            Recipe::Deformed { of, .. } => {
+                self.deformed((handle, *of), wanted.within(&shape.options.placement), next_source)?
             }
             recipe => {
                 let mut made = self.leaf(handle, wanted)?;
@@ -166,7 +171,9 @@ impl<'a> Maker<'a> {
                 });
                 return self.finished(shape, made.map_err(|error| self.in_terms_of_limits(error))?);
             }
-            Recipe::Assembly(_) => Ok(Tessellation { mesh: Mesh::default(), deviation: Deviation::NONE }),
+            Recipe::Assembly(_) | Recipe::Deformed { .. } => {
+                Ok(Tessellation { mesh: Mesh::default(), deviation: Deviation::NONE })
+            }
         };
         let made = made.map_err(|error| self.in_terms_of_limits(error))?;
         self.finished(shape, surface(made))
@@ -188,6 +195,7 @@ impl<'a> Maker<'a> {
                 | Recipe::Sheet(_)
                 | Recipe::Polygons { .. }
                 | Recipe::Assembly(_)
+                | Recipe::Deformed { .. }
         );
         let flat = !faceted && shape.options.smoothing == Smoothing::Flat;
         let made = if flat { flatten(made) } else { made };
@@ -233,6 +241,56 @@ impl<'a> Maker<'a> {
             tolerance: None,
             notes: notes.into_iter().flatten().map(|note| (handle, note)).collect(),
         })
+    }
+
+    /// A shape that is made finely enough to be bent, then bent.
+    fn deformed(
+        &self,
+        (handle, of): (ShapeHandle, ShapeHandle),
+        inherited: Inherited,
+        next_source: &mut u32,
+    ) -> Result<Made, RealizeError> {
+        let shape = self.model.shape(handle);
+        let map = self.extents.map(handle).map_err(RealizeError::Deform)?;
+        let tolerance = inherited.tolerance.unwrap_or_else(|| {
+            let points = bent(self.model, &self.extents, of).into_iter();
+            Bounds::of_points(points.map(|point| map.apply(point).point)).diagonal() / 2000.0
+        });
+        let stretch = map.stretch(&self.extents.bounds(of));
+        if !stretch.is_finite() {
+            return Err(RealizeError::Deform(DeformError::NoLength));
+        }
+        // Half for the shape itself; what that leaves is for the map.
+        let share = Inherited {
+            tolerance: Some(tolerance / (2.0 * stretch)),
+            rounding: inherited.rounding / stretch,
+            ..inherited
+        };
+        let first = *next_source;
+        let mut made = self.part(of, share, next_source)?;
+        let tolerance = tolerance * self.coarser;
+        let aim = (tolerance - inherited.rounding).max(tolerance / 2.0);
+        let before = made.deviation.bound * stretch;
+        let left = (aim - before).max(aim / 8.0);
+        let limit = limit::triangle_limit(&self.model.limits);
+        // The sources of the shape count on after those before it.
+        let mut periods = vec![(f64::INFINITY, f64::INFINITY); first as usize];
+        super::bent::periods(self.model, of, &mut periods);
+        let subject = Deformed { mesh: made.mesh, wire: made.wire };
+        let (subject, deviation) =
+            deform(subject, map, &periods, left, limit).map_err(|error| match error {
+                DeformError::Tessellate(error) => self.in_terms_of_limits(error),
+                error => RealizeError::Deform(error),
+            })?;
+        (made.mesh, made.wire) = (subject.mesh, subject.wire);
+        made.deviation = Deviation {
+            bound: before + deviation.bound,
+            evidence: made.deviation.evidence.max(deviation.evidence),
+        };
+        made.tolerance = Some(tolerance);
+        let made = if shape.options.smoothing == Smoothing::Flat { flatten(made) } else { made };
+        cost(&made).check(&self.model.limits)?;
+        Ok(made)
     }
 
     fn assembly(
@@ -387,6 +445,7 @@ fn shows_texture(model: &Model, handle: ShapeHandle) -> bool {
     for shape in &model.shapes[..=handle.0 as usize] {
         let of_parts = match &shape.recipe {
             Recipe::Assembly(parts) => parts.iter().any(|(part, _)| shows[part.0 as usize]),
+            Recipe::Deformed { of, .. } => shows[of.0 as usize],
             Recipe::Polygons { materials, .. } => materials.iter().flatten().any(textured),
             _ => false,
         };

@@ -4,15 +4,18 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
+use super::bent::{Bent, Flat};
+use super::deformation::deformation;
 use super::nearest::Field;
+use super::reach::bent;
 use super::shape::frame_map;
 use crate::geometry::curve::{AnyCurve, Curve, Domain, Side, nearest_within};
 use crate::geometry::field::Quadric;
 use crate::geometry::mesh::{self, Anchor};
 use crate::geometry::number::{Bounds, hypot};
-use crate::geometry::surface::{AnySurface, Surface as _, SweptWall};
+use crate::geometry::surface::{AnySurface, Deformation, Surface as _, SweptWall};
 use crate::geometry::tessellate::{
-    ClippedQuadric, Closing, Density, HeightMap, RoundedBox, Route, discretize,
+    ClippedQuadric, Closing, DeformError, Density, HeightMap, RoundedBox, Route, discretize,
 };
 use crate::model::{Model, Recipe, ShapeHandle};
 
@@ -33,7 +36,7 @@ pub(super) fn source_count(recipe: &Recipe) -> u32 {
         | Recipe::Sheet(_) => 1,
         Recipe::Wire(curves) => mesh::index(curves.len()),
         Recipe::Quadric(_) => ClippedQuadric::SOURCES,
-        Recipe::Assembly(_) => 0,
+        Recipe::Assembly(_) | Recipe::Deformed { .. } => 0,
     }
 }
 
@@ -48,7 +51,8 @@ pub struct Source {
 #[derive(Clone, Debug)]
 enum Kind {
     /// Triangles are the shape, or a flat face whose outline is measured elsewhere.
-    Exact,
+    Flat(Flat),
+    Bent(Box<Bent>),
     /// A ball too: a box without sides.
     Rounded(RoundedBox),
     Revolved(AnyCurve),
@@ -100,7 +104,7 @@ impl Sources {
     /// Whether any of them is curved.
     #[must_use]
     pub fn curved(&self) -> bool {
-        self.0.iter().any(|source| !matches!(source.kind, Kind::Exact))
+        self.0.iter().any(|source| !matches!(source.kind, Kind::Flat(Flat::Exact)))
     }
 }
 
@@ -108,62 +112,94 @@ impl Sources {
 #[must_use]
 pub fn sources(model: &Model, handle: ShapeHandle) -> Sources {
     let mut all = Vec::new();
-    collect(model, handle, &frame_map(&model.frame), &mut all);
+    let collector = Collector { model, extents: extents(model) };
+    collector.collect(handle, &frame_map(&model.frame), false, &mut all);
     Sources(all)
 }
 
-fn collect(model: &Model, handle: ShapeHandle, outer: &DAffine3, all: &mut Vec<Source>) {
-    let shape = model.shape(handle);
-    let map = *outer * shape.options.placement;
-    let mut push = |kind: Kind| all.push(Source { kind, map, back: map.inverse() });
-    match &shape.recipe {
-        Recipe::Cuboid { .. } => (0..6).for_each(|_| push(Kind::Exact)),
-        Recipe::Polygons { .. } | Recipe::Plane(_) | Recipe::Sheet(_) => push(Kind::Exact),
-        Recipe::RoundedBox(shape) => push(Kind::Rounded(*shape)),
-        Recipe::Geodesic(ball) => {
-            push(Kind::Rounded(RoundedBox { size: DVec3::splat(2.0 * ball.radius), radius: ball.radius }));
+struct Collector<'a> {
+    model: &'a Model,
+    extents: Extents,
+}
+
+impl Collector<'_> {
+    /// The surfaces of a shape under a map; flat faces are told apart where something bends them.
+    fn collect(&self, handle: ShapeHandle, outer: &DAffine3, bends: bool, all: &mut Vec<Source>) {
+        let shape = self.model.shape(handle);
+        let map = *outer * shape.options.placement;
+        match &shape.recipe {
+            Recipe::Assembly(parts) => {
+                for (part, inner) in parts {
+                    self.collect(*part, &(map * *inner), bends, all);
+                }
+            }
+            Recipe::Deformed { of, .. } => {
+                let mut inner = Vec::new();
+                self.collect(*of, &DAffine3::IDENTITY, true, &mut inner);
+                let Ok(bending) = self.extents.map(handle) else { return };
+                all.extend(inner.into_iter().map(|inner| {
+                    let kind = Kind::Bent(Box::new(Bent { inner, map: Arc::clone(bending) }));
+                    Source { kind, map, back: map.inverse() }
+                }));
+            }
+            recipe => {
+                let kinds = kinds(recipe, bends).into_iter();
+                all.extend(kinds.map(|kind| Source { kind, map, back: map.inverse() }));
+            }
         }
+    }
+}
+
+/// The surfaces of a recipe that is made of no other shape, in the order of its anchors.
+fn kinds(recipe: &Recipe, bends: bool) -> Vec<Kind> {
+    let flat = |face: Flat| Kind::Flat(if bends { face } else { Flat::Exact });
+    let rounded = |size: DVec3, radius: f64| vec![Kind::Rounded(RoundedBox { size, radius })];
+    match recipe {
+        Recipe::Cuboid { size, center } => Flat::of_box(*size, *center).into_iter().map(flat).collect(),
+        Recipe::Polygons { mesh, .. } => {
+            vec![Kind::Flat(if bends { Flat::of_polygons(mesh) } else { Flat::Exact })]
+        }
+        Recipe::Plane(_) => vec![flat(Flat::Plane(DVec3::ZERO, DVec3::Y))],
+        Recipe::Sheet(_) => vec![flat(Flat::Plane(DVec3::ZERO, DVec3::Z))],
+        Recipe::RoundedBox(shape) => rounded(shape.size, shape.radius),
+        Recipe::Geodesic(ball) => rounded(DVec3::splat(2.0 * ball.radius), ball.radius),
         Recipe::Revolution(revolution) => {
-            push(Kind::Revolved(revolution.profile.clone()));
-            push(Kind::Exact);
-            push(Kind::Exact);
+            let wall = Kind::Revolved(revolution.profile.clone());
+            std::iter::once(wall).chain(Flat::of_turn(revolution).map(flat)).collect()
         }
         Recipe::Extrusion(extrusion) => {
-            extrusion.outlines.iter().for_each(|outline| push(Kind::Extruded(outline.clone())));
-            push(Kind::Exact);
-            push(Kind::Exact);
+            let walls = extrusion.outlines.iter().map(|outline| Kind::Extruded(outline.clone()));
+            let ends = [extrusion.bottom, extrusion.bottom + extrusion.height];
+            walls.chain(ends.map(|z| flat(Flat::Plane(DVec3::Z * z, DVec3::Z)))).collect()
         }
         Recipe::Height(map) => {
             let shared = Arc::new(map.clone());
-            push(Kind::Height(shared.clone(), 0.0));
-            push(Kind::Exact);
             let depth = if let Closing::Thickness(depth) = map.close { depth } else { 0.0 };
-            push(Kind::Height(shared, -depth));
+            let sides = Kind::Flat(Flat::Exact);
+            vec![Kind::Height(shared.clone(), 0.0), sides, Kind::Height(shared, -depth)]
         }
         Recipe::Sweep(sweep) => {
             let surface = Arc::new(sweep.surface());
-            for outline in 0..sweep.outlines.len() {
-                push(Kind::Swept(SweptWall { surface: surface.clone(), outline }));
-            }
-            push(Kind::Exact);
-            push(Kind::Exact);
+            let wall = |outline| Kind::Swept(SweptWall { surface: surface.clone(), outline });
+            let walls: Vec<Kind> = (0..sweep.outlines.len()).map(wall).collect();
+            walls.into_iter().chain(Flat::of_way(&surface).map(flat)).collect()
         }
         Recipe::Patches(patches) => {
-            patches.surfaces.iter().for_each(|surface| push(Kind::Patch(Box::new(Field::new(surface)))));
-            patches.caps.iter().for_each(|_| push(Kind::Exact));
+            let fields = patches.surfaces.iter().map(|surface| Kind::Patch(Box::new(Field::new(surface))));
+            fields.chain(Flat::of_caps(patches).into_iter().map(flat)).collect()
         }
-        Recipe::Trimmed(shape) => push(Kind::Patch(Box::new(Field::new(&shape.surface)))),
-        Recipe::Wire(curves) => curves.iter().for_each(|curve| push(Kind::Line(curve.clone()))),
+        Recipe::Trimmed(shape) => vec![Kind::Patch(Box::new(Field::new(&shape.surface)))],
         Recipe::Quadric(shape) => {
-            for source in 0..ClippedQuadric::SOURCES {
-                push(shape.surface(source).map_or(Kind::Exact, Kind::Quadric));
-            }
+            let faces = if bends { Flat::of_clip(shape) } else { Flat::Exact };
+            let flat = |source| {
+                let cut = !shape.is_sheet(source);
+                Kind::Flat(if cut { faces.clone() } else { Flat::Exact })
+            };
+            let kind = |source| shape.surface(source).map_or_else(|| flat(source), Kind::Quadric);
+            (0..ClippedQuadric::SOURCES).map(kind).collect()
         }
-        Recipe::Assembly(parts) => {
-            for (part, inner) in parts {
-                collect(model, *part, &(map * *inner), all);
-            }
-        }
+        Recipe::Wire(curves) => curves.iter().map(|curve| Kind::Line(curve.clone())).collect(),
+        Recipe::Assembly(_) | Recipe::Deformed { .. } => Vec::new(),
     }
 }
 
@@ -235,13 +271,36 @@ pub(super) fn nearest_near(curve: &impl Curve, point: DVec3, corners: [f64; 3]) 
 impl Source {
     /// Whether one of these places lies on a side of a patch, which others may have too.
     fn touches_rims(&self, places: &[(f64, f64); 3]) -> bool {
-        matches!(&self.kind, Kind::Patch(field) if places.iter().any(|place| field.on_rim(*place)))
+        match &self.kind {
+            Kind::Patch(field) => places.iter().any(|place| field.on_rim(*place)),
+            Kind::Bent(bent) => bent.inner.touches_rims(places),
+            _ => false,
+        }
     }
 
     /// Parameters of a point of the written mesh that lies on a side of this patch.
     fn rim_place(&self, point: DVec3) -> Option<(f64, f64)> {
-        let Kind::Patch(field) = &self.kind else { return None };
-        field.rim_place(self.back.transform_point3(point))
+        let local = self.back.transform_point3(point);
+        match &self.kind {
+            Kind::Patch(field) => field.rim_place(local),
+            Kind::Bent(bent) => {
+                bent.map.origins(local).into_iter().find_map(|origin| bent.inner.rim_place(origin))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether it is a curve by itself.
+    pub(super) fn is_line(&self) -> bool {
+        matches!(self.kind, Kind::Line(_))
+    }
+
+    /// What is bent, the map after that, and its inverse.
+    pub(super) fn bent(&self) -> Option<(&Bent, &DAffine3, &DAffine3)> {
+        match &self.kind {
+            Kind::Bent(bent) => Some((bent, &self.map, &self.back)),
+            _ => None,
+        }
     }
 
     /// Distance from a point of the written mesh to the nearest point of this surface near the
@@ -250,7 +309,9 @@ impl Source {
     pub fn distance(&self, point: DVec3, window: &Window) -> f64 {
         let local = self.back.transform_point3(point);
         let away = match &self.kind {
-            Kind::Exact => return 0.0,
+            Kind::Flat(Flat::Exact) => return 0.0,
+            Kind::Flat(face) => face.distance(local),
+            Kind::Bent(bent) => bent.distance(local, window),
             Kind::Rounded(shape) => shape.distance(local),
             Kind::Revolved(profile) => {
                 let radius = hypot(local.x, local.z);
@@ -273,19 +334,57 @@ impl Source {
     }
 }
 
-/// A box around each shape of a model, its placement applied, in the document's unit.
-pub(super) fn extents(model: &Model) -> Vec<Bounds> {
-    let mut all: Vec<Bounds> = Vec::with_capacity(model.shapes.len());
+/// How far shapes reach, and the maps that bend them.
+#[derive(Clone, Debug)]
+pub(super) struct Extents {
+    /// A box around each shape, its placement applied, in the document's unit.
+    boxes: Vec<Bounds>,
+    /// For each shape that is another one deformed, the map.
+    maps: Vec<Option<Result<Arc<Deformation>, DeformError>>>,
+}
+
+impl Extents {
+    /// The box of a shape.
+    pub(super) fn bounds(&self, handle: ShapeHandle) -> Bounds {
+        self.boxes[handle.0 as usize]
+    }
+
+    /// The map of a deformed shape.
+    ///
+    /// # Errors
+    /// When the shape cannot be deformed so.
+    pub(super) fn map(&self, handle: ShapeHandle) -> Result<&Arc<Deformation>, DeformError> {
+        match &self.maps[handle.0 as usize] {
+            Some(found) => found.as_ref().map_err(Clone::clone),
+            None => Err(DeformError::NoLength),
+        }
+    }
+}
+
+/// The extents of all shapes of a model.
+pub(super) fn extents(model: &Model) -> Extents {
+    let mut all = Extents { boxes: Vec::new(), maps: Vec::new() };
     for shape in &model.shapes {
+        // A recipe refers only to shapes before it.
+        let mut map = None;
         let own = match &shape.recipe {
-            // A recipe refers only to shapes before it.
             Recipe::Assembly(parts) => parts
                 .iter()
-                .map(|(part, map)| mapped(&all[part.0 as usize], map))
+                .map(|(part, map)| mapped(&all.bounds(*part), map))
                 .fold(Bounds::EMPTY, Bounds::union),
+            Recipe::Deformed { of, by } => {
+                let found = deformation(model, &all, *of, by).map(Arc::new);
+                let own = found.as_ref().map_or(all.bounds(*of), |map| {
+                    let points = bent(model, &all, *of).into_iter();
+                    Bounds::of_points(points.map(|point| map.apply(point).point))
+                });
+                map = Some(found);
+                own
+            }
             recipe => extent(recipe),
         };
-        all.push(mapped(&own, &shape.options.placement));
+        all.boxes.push(mapped(&own, &shape.options.placement));
+        all.maps.push(map);
     }
     all
 }
@@ -354,7 +453,7 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
         Recipe::Wire(curves) => curves.iter().map(along).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Quadric(shape) => shape.bounds(),
         Recipe::Trimmed(shape) => shape.bounds(),
-        Recipe::Assembly(_) => Bounds::EMPTY,
+        Recipe::Assembly(_) | Recipe::Deformed { .. } => Bounds::EMPTY,
     }
 }
 

@@ -6,6 +6,8 @@
 
 mod any;
 pub mod coons;
+mod deformation;
+mod deformed_path;
 mod extruded;
 mod frame;
 mod joint;
@@ -23,6 +25,8 @@ mod translational;
 pub mod triangle;
 
 pub use any::AnySurface;
+pub use deformation::{AxialDeformation, AxialKind, Deformation, Warped};
+pub use deformed_path::{Line, PathDeformation};
 pub use extruded::ExtrudedSurface;
 pub use frame::{Carry, Frame, FrameField, FrameRule};
 pub use joint::{PatchContinuity, Smoothness, SurfaceJoint, SurfaceJoints, SurfaceLine, joints};

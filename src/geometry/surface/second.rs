@@ -64,3 +64,12 @@ pub(super) fn times(range: &Bounds, factor: f64) -> Bounds {
 pub(super) fn difference(a: &Bounds, b: &Bounds) -> Bounds {
     Bounds { min: a.min - b.max, max: a.max - b.min }
 }
+
+/// The corners of a box.
+pub(super) fn corners(bounds: &Bounds) -> [DVec3; 8] {
+    let pick = |bit: usize, low: f64, high: f64| if bit == 0 { low } else { high };
+    let (low, high) = (bounds.min, bounds.max);
+    [0, 1, 2, 3, 4, 5, 6, 7].map(|k: usize| {
+        DVec3::new(pick(k & 1, low.x, high.x), pick(k & 2, low.y, high.y), pick(k & 4, low.z, high.z))
+    })
+}

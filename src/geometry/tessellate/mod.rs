@@ -8,6 +8,7 @@
 
 mod cap;
 mod cuboid;
+mod deform;
 mod discretize;
 mod extrude;
 mod geodesic;
@@ -28,6 +29,7 @@ mod trimmed;
 mod wire;
 
 pub use cuboid::cuboid;
+pub use deform::{DeformError, Deformed, deform};
 pub use discretize::{Density, Station, arc_lengths, discretize};
 pub use extrude::{Extrusion, extrude};
 pub use geodesic::{Geodesic, geodesic};

@@ -201,6 +201,8 @@ codes! {
     TurnsMeet = "K0817";
     /// a sweep runs into another part of itself
     SelfOverlap = "K0818";
+    /// a shape is longer than the path it is laid along
+    LongerThanPath = "K0819";
 
     /// an open and a closed curve cannot be joined
     OpenAndClosed = "K0820";
@@ -208,6 +210,12 @@ codes! {
     Coincident = "K0821";
     /// an end cannot be closed by a flat face
     NoFlatEnd = "K0822";
+    /// a shape would fold over itself
+    FoldsOver = "K0823";
+    /// a map has no length to act on
+    NoLength = "K0824";
+    /// a path has a corner where it must be smooth
+    CorneredPath = "K0825";
     /// a profile does not lie in one plane
     NoPlane = "K0826";
     /// a measure of a shape does not fit its other measures

@@ -218,6 +218,9 @@ examples! {
     BeyondPrecision: "A glTF file holds positions in single precision: about seven digits. Far from the origin, or where the tolerance is very fine, rounding alone moves points by more than half the tolerance. Model near the origin and let a node carry the shape to its place, or write a coarser tolerance.",
         "tolerance = 0.001\n[shape.a.sphere]\nradius = 1\ncenter = [30000, 0, 0]" =>
         "tolerance = 0.001\n[shape.a.sphere]\nradius = 1\n[node.n]\nshape = \"a\"\nat = [30000, 0, 0]";
+    LongerThanPath: "A shape that is laid along an open path keeps its length, so it must not reach beyond either end of the path. Stretch it to the path with `stretch = true`, choose another `from`, or write a longer path; a closed path is gone around again.",
+        "[shape.a.along]\nof = { box = { size = [0.1, 0.1, 4] } }\npath = { arc = { radius = 2, from = 0, to = 90 } }" =>
+        "[shape.a.along]\nof = { box = { size = [0.1, 0.1, 4] } }\npath = { arc = { radius = 2, from = 0, to = 90 } }\nstretch = true";
     OpenAndClosed: "A surface between curves joins point to point. Where one of them comes back to its start and the other does not, the surface would have a slit that nobody asked for.",
         "[shape.a.ruled]\nfrom = { circle = { radius = 1 } }\nto = { polyline = { points = [[0, 0, 1], [1, 0, 1], [1, 1, 1]] } }" =>
         "[shape.a.ruled]\nfrom = { circle = { radius = 1 } }\nto = { polyline = { points = [[0, 0, 1], [1, 0, 1], [1, 1, 1]], closed = true } }";
@@ -227,6 +230,15 @@ examples! {
     NoFlatEnd: "Solids between closed curves end in flat faces, so these curves must be flat and enclose an area. Leave the faces out with `caps = false`, or close the end with a shape of its own.",
         "[shape.a.ruled]\nfrom = { polyline = { points = [[0, 0], [1, 0, 1], [1, 1], [0, 1, 1]], closed = true } }\nto = [0, 0, 4]" =>
         "[shape.a.ruled]\nfrom = { polyline = { points = [[0, 0], [1, 0, 1], [1, 1], [0, 1, 1]], closed = true } }\nto = [0, 0, 4]\ncaps = false";
+    FoldsOver: "A bend presses together what lies inside of it. What reaches beyond the center of the bend would be turned inside out. Bend less, over a greater length, or a thinner shape; or move the axis with `around`.",
+        "[shape.a.bend]\nof = { box = { size = [2, 1, 1] } }\nangle = 90" =>
+        "[shape.a.bend]\nof = { box = { size = [1, 2, 1] } }\nangle = 90";
+    NoLength: "A taper, twist or bend goes from one place on its axis to another. The shape must have a length along the axis, `to` must lie after `from`, and an axis cannot bend toward itself.",
+        "[shape.a.twist]\nof = { box = { size = [1, 1, 1] } }\nangle = 90\nfrom = 0.2\nto = 0.1" =>
+        "[shape.a.twist]\nof = { box = { size = [1, 1, 1] } }\nangle = 90\nfrom = 0.1\nto = 0.2";
+    CorneredPath: "A shape laid along a path with a corner would tear there. Round the corner with an arc or a spline.",
+        "[shape.a.along]\nof = { box = { size = [0.1, 0.1, 1] } }\npath = { polyline = { points = [[0, 0], [1, 0], [1, 1]] } }" =>
+        "[shape.a.along]\nof = { box = { size = [0.1, 0.1, 1] } }\npath = { arc = { radius = 1, from = 0, to = 90 } }";
     NoPlane: "A loft leaves a profile at right angles to its plane, and a round tip spreads in the plane of its neighbor. A straight line, or a curve that leaves its plane, has none.",
         "[shape.a.loft]\nprofiles = [{ line = { from = [0, 0], to = [1, 0] } }, { line = { from = [0, 0, 1], to = [1, 0, 1] } }]\nstart = \"straight\"" =>
         "[shape.a.loft]\nprofiles = [{ line = { from = [0, 0], to = [1, 0] } }, { line = { from = [0, 0, 1], to = [1, 0, 1] } }]\nstart = { first = [0, 0, 1] }";

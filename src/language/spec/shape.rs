@@ -8,6 +8,7 @@ use crate::language::spec::check::Check;
 use crate::language::spec::combine::{Array, Copy, Group, Mirror};
 use crate::language::spec::construct::{choices, kinds, table};
 use crate::language::spec::coons::{Coons, Gordon};
+use crate::language::spec::deform::{Along, Bend, Taper, Twist};
 use crate::language::spec::height::HeightMap;
 use crate::language::spec::import::Import;
 use crate::language::spec::joined::Joined;
@@ -162,6 +163,14 @@ kinds! {
         Mesh(Mesh) = "mesh";
         /// A model from a file.
         Import(Import) = "import";
+        /// Another shape, thinner or thicker along an axis.
+        Taper(Taper) = "taper";
+        /// Another shape, turned about an axis more and more.
+        Twist(Twist) = "twist";
+        /// Another shape, its axis bent into an arc.
+        Bend(Bend) = "bend";
+        /// Another shape, laid along a curve.
+        Along(Along) = "along";
         /// Another shape again.
         Copy(Copy) = "copy";
         /// Another shape and its mirror image.

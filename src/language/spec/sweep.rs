@@ -95,29 +95,30 @@ impl Read for ProfileStation {
     }
 }
 
+/// `up` goes with frames that look up, and is a direction.
+pub(super) fn check_up(frame: &Sp<Frame>, up: Option<&Sp<DVec3>>, reader: &mut Reader<'_>) -> bool {
+    let Some(up) = up else { return true };
+    if frame.value != Frame::Up {
+        let message = format!("`up` has no meaning with `frame = \"{}\"`", frame.text());
+        let report = Diagnostic::error(Code::Conflict, message)
+            .at(up.span, "only for frame = \"up\"")
+            .help("write `frame = \"up\"`, or leave `up` out");
+        reader.report(report);
+        return false;
+    }
+    if up.value == DVec3::ZERO {
+        let report = Diagnostic::error(Code::OutOfRange, "`up` must not be [0, 0, 0]");
+        reader.report(report.at(up.span, "no direction"));
+        return false;
+    }
+    true
+}
+
 impl Sweep {
     fn check(&self, span: Span, reader: &mut Reader<'_>) -> bool {
-        let up = self.check_up(reader);
+        let up = check_up(&self.frame, self.up.as_ref(), reader);
         let profiles = self.check_profiles(span, reader);
         up && profiles
-    }
-
-    fn check_up(&self, reader: &mut Reader<'_>) -> bool {
-        let Some(up) = self.up else { return true };
-        if self.frame.value != Frame::Up {
-            let message = format!("`up` has no meaning with `frame = \"{}\"`", self.frame.text());
-            let report = Diagnostic::error(Code::Conflict, message)
-                .at(up.span, "only for frame = \"up\"")
-                .help("write `frame = \"up\"`, or leave `up` out");
-            reader.report(report);
-            return false;
-        }
-        if up.value == DVec3::ZERO {
-            let report = Diagnostic::error(Code::OutOfRange, "`up` must not be [0, 0, 0]");
-            reader.report(report.at(up.span, "no direction"));
-            return false;
-        }
-        true
     }
 
     fn check_profiles(&self, span: Span, reader: &mut Reader<'_>) -> bool {

@@ -135,7 +135,7 @@ impl Transport {
         stop.map_or_else(|| from.walked + length_of_step(path, from.t, t.max(from.t)), |stop| stop.walked)
     }
 
-    /// The parameter at a walked length, metres: bisection between stops, to the last bit but a few.
+    /// The parameter at a walked length, metres: Newton's method between stops, to the last bit but a few.
     pub(super) fn parameter(&self, path: &AnyCurve, walked: f64) -> f64 {
         let after = self.stops.partition_point(|stop| stop.walked < walked);
         let (Some(to), true) = (self.stops.get(after), after > 0) else {
@@ -144,16 +144,27 @@ impl Transport {
         if to.walked == walked {
             return to.t;
         }
-        let (mut low, mut high) = (self.stops[after - 1].t, to.t);
+        let from = &self.stops[after - 1];
+        let (mut low, mut high) = (from.t, to.t);
+        let near = 2.0 * f64::EPSILON * (low.abs().max(high.abs()));
+        let mut t = low + (high - low) * ((walked - from.walked) / (to.walked - from.walked));
         for _ in 0..60 {
-            let middle = (low + high) / 2.0;
-            if self.walked(path, middle) < walked {
-                low = middle;
+            let missing = walked - (from.walked + length_of_step(path, from.t, t));
+            if missing > 0.0 {
+                low = t;
             } else {
-                high = middle;
+                high = t;
+            }
+            let step = missing / path.evaluate(t, Side::After).first.length();
+            // Where the path stands still, or a step leaves what is known, the middle is as good.
+            let next = if t + step > low && t + step < high { t + step } else { f64::midpoint(low, high) };
+            let moved = (next - t).abs();
+            t = next;
+            if moved <= near {
+                break;
             }
         }
-        (low + high) / 2.0
+        t
     }
 }
 

@@ -20,11 +20,22 @@
 
 use glam::DVec3;
 
-use super::layout::Block;
 use super::rows::{Corner, Free};
 use crate::geometry::number::{Bounds, hypot};
-use crate::geometry::surface::{SecondRange, Surface as _, SurfaceJet};
+use crate::geometry::surface::{SecondRange, SurfaceJet};
 use crate::geometry::tessellate::Evidence;
+
+/// What triangles are held against: a smooth surface over a rectangle of parameters.
+pub(in crate::geometry::tessellate) trait Chart {
+    /// Point, tangents and normal.
+    fn jet(&self, u: f64, v: f64) -> SurfaceJet;
+
+    /// Boxes of the second derivatives over a rectangle; none where none are known.
+    fn second_range(&self, u: (f64, f64), v: (f64, f64)) -> Option<SecondRange>;
+
+    /// The rectangle, in u and v.
+    fn limits(&self) -> ((f64, f64), (f64, f64));
+}
 
 /// The verdict on a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,19 +73,19 @@ impl Verdict {
 
 /// Judges a triangle by its corners, the surface's normals there, and their places.
 pub(in crate::geometry::tessellate) fn judge(
-    block: &Block<'_>,
+    chart: &impl Chart,
     (corners, normals): ([Corner; 3], [DVec3; 3]),
     places: [DVec3; 3],
     wanted: f64,
 ) -> Verdict {
     let normal = (places[1] - places[0]).cross(places[2] - places[0]).normalize_or_zero();
-    let proved = prove(block, &corners, normal);
+    let proved = prove(chart, &corners, normal);
     if proved <= wanted && proved.is_finite() {
         // What the samples would say is no more.
         return Verdict { proved, sampled: proved, sides: [0.0; 3] };
     }
     let tilted = normals.iter().any(|own| own.dot(normal) <= 0.0);
-    let (sampled, sides) = sample(block, &corners, &places, (normal, tilted));
+    let (sampled, sides) = sample(chart, &corners, &places, (normal, tilted));
     Verdict { proved, sampled, sides }
 }
 
@@ -100,14 +111,14 @@ fn between(a: &Corner, b: &Corner, part: f64) -> (f64, f64) {
 }
 
 fn sample(
-    block: &Block<'_>,
+    chart: &impl Chart,
     corners: &[Corner; 3],
     places: &[DVec3; 3],
     (normal, tilted): (DVec3, bool),
 ) -> (f64, [f64; 3]) {
     let mut least = f64::INFINITY;
     let mut away = |(u, v): (f64, f64), place: DVec3| {
-        let jet = block.jet(u, v);
+        let jet = chart.jet(u, v);
         least = least.min(jet.normal.dot(normal));
         (place - jet.point).dot(jet.normal)
     };
@@ -162,21 +173,22 @@ fn along(range: &Bounds, direction: DVec3) -> (f64, f64) {
     (range.center().dot(direction), reach)
 }
 
-fn prove(block: &Block<'_>, corners: &[Corner; 3], normal: DVec3) -> f64 {
+fn prove(chart: &impl Chart, corners: &[Corner; 3], normal: DVec3) -> f64 {
     let extent = |values: [f64; 3]| {
         let low = values.into_iter().fold(f64::INFINITY, f64::min);
         (low, values.into_iter().fold(f64::NEG_INFINITY, f64::max))
     };
     let (u, v) = (extent(corners.map(|corner| corner.u)), extent(corners.map(|corner| corner.v)));
     let (h, k) = (u.1 - u.0, v.1 - v.0);
-    let Some(range) = block.surface.second_range(widened(u, block.u), widened(v, block.v)) else {
+    let limits = chart.limits();
+    let Some(range) = chart.second_range(widened(u, limits.0), widened(v, limits.1)) else {
         return f64::INFINITY;
     };
     if corners.iter().any(|corner| corner.free != Free::Neither) {
         let (height, shift) = at_pole(&range, normal, (h, k));
         return hypot(height, shift);
     }
-    let middle = || block.jet((u.0 + u.1) / 2.0, (v.0 + v.1) / 2.0);
+    let middle = || chart.jet((u.0 + u.1) / 2.0, (v.0 + v.1) / 2.0);
     bound(&range, middle, (normal, steps(corners)), (h, k), 0.0)
 }
 
@@ -271,8 +283,8 @@ fn at_pole(range: &SecondRange, normal: DVec3, (h, k): (f64, f64)) -> (f64, f64)
 
 /// How far the line of a rim may lie from its chord between two corners: along the whole line the component
 /// across the chord vanishes at both ends.
-pub(super) fn judge_chord(
-    block: &Block<'_>,
+pub(in crate::geometry::tessellate) fn judge_chord(
+    chart: &impl Chart,
     (a, b): (&Corner, &Corner),
     places: [DVec3; 2],
     tolerance: f64,
@@ -280,19 +292,22 @@ pub(super) fn judge_chord(
     let direction = (places[1] - places[0]).normalize_or_zero();
     let across = |vector: DVec3| vector - direction * vector.dot(direction);
     let order = |a: f64, b: f64| (a.min(b), a.max(b));
-    let (u, v) = (order(a.u, b.u), order(a.v, b.v));
-    let (h, k) = (u.1 - u.0, v.1 - v.0);
-    let proved = block.surface.second_range(u, v).map_or(f64::INFINITY, |range| {
-        let (range, step) = if h > 0.0 { (range.uu, h) } else { (range.vv, k) };
-        let half = (range.max - range.min).length() / 2.0;
-        (across(range.center()).length() + half) * step * step / 8.0
+    let (start, end) = (between(a, b, 0.0), between(a, b, 1.0));
+    let (u, v) = (order(start.0, end.0), order(start.1, end.1));
+    let (h, k) = (end.0 - start.0, end.1 - start.1);
+    let proved = chart.second_range(u, v).map_or(f64::INFINITY, |range| {
+        let center =
+            range.uu.center() * (h * h) + range.uv.center() * (2.0 * h * k) + range.vv.center() * (k * k);
+        let half = |range: &Bounds| (range.max - range.min).length() / 2.0;
+        let rest = half(&range.uu) * h * h + 2.0 * half(&range.uv) * (h * k).abs() + half(&range.vv) * k * k;
+        (across(center).length() + rest) / 8.0
     });
     if proved <= tolerance {
         return (proved, Evidence::Proved);
     }
     let at = |part: f64| {
-        let place = block.jet(a.u + (b.u - a.u) * part, a.v + (b.v - a.v) * part).point;
-        across(place - places[0]).length()
+        let (u, v) = between(a, b, part);
+        across(chart.jet(u, v).point - places[0]).length()
     };
     let sampled = [0.25, 0.5, 0.75].into_iter().map(at).fold(0.0, f64::max) * MARGIN;
     if proved <= sampled { (proved, Evidence::Proved) } else { (sampled, Evidence::Sampled) }

@@ -8,11 +8,12 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
+use super::judge::Chart;
 use crate::geometry::curve::Side;
 use crate::geometry::mesh::weld::weld_near;
 use crate::geometry::number::Bounds;
 pub use crate::geometry::surface::Rim;
-use crate::geometry::surface::{AnySurface, SecondJet, Surface, SurfaceJet};
+use crate::geometry::surface::{AnySurface, SecondJet, SecondRange, Surface, SurfaceJet};
 
 /// A smooth rectangle of one surface.
 pub(in crate::geometry::tessellate) struct Block<'a> {
@@ -102,6 +103,20 @@ impl Block<'_> {
     fn point(&self, place: (f64, f64)) -> DVec3 {
         let (u, v) = self.at(place);
         self.jet(u, v).point
+    }
+}
+
+impl Chart for Block<'_> {
+    fn jet(&self, u: f64, v: f64) -> SurfaceJet {
+        Block::jet(self, u, v)
+    }
+
+    fn second_range(&self, u: (f64, f64), v: (f64, f64)) -> Option<SecondRange> {
+        self.surface.second_range(u, v)
+    }
+
+    fn limits(&self) -> ((f64, f64), (f64, f64)) {
+        (self.u, self.v)
     }
 }
 

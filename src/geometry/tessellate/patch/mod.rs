@@ -9,13 +9,13 @@
 
 mod assemble;
 mod density;
-mod judge;
+pub(super) mod judge;
 mod lattice;
 mod layout;
 mod net;
 mod plan;
 mod refine;
-mod rows;
+pub(super) mod rows;
 #[cfg(test)]
 mod tests;
 

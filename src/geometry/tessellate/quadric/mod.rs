@@ -44,6 +44,12 @@ impl ClippedQuadric {
         (source < SHEETS && !self.form().kind.is_flat()).then_some(self.quadric)
     }
 
+    /// Whether an anchor's source is the quadric itself and not a face of the cut.
+    #[must_use]
+    pub fn is_sheet(&self, source: u32) -> bool {
+        source < SHEETS
+    }
+
     /// What surface the quadric is, there where it is cut off.
     #[must_use]
     pub fn form(&self) -> QuadricForm {
