@@ -331,6 +331,25 @@ fn assert_smooth(subject: &Subject, start: f64, end: f64) {
 }
 
 #[test]
+fn many_at_once_are_the_same_as_one_by_one() {
+    let mut dice = Dice::new(31);
+    for subject in Subject::all() {
+        let domain = subject.curve.domain();
+        let mut places: Vec<f64> = (0..40).map(|_| dice.between(domain.start, domain.end)).collect();
+        places.extend(subject.curve.breaks());
+        places.extend([domain.start, domain.end, domain.start - 1.0, domain.end + 1.0]);
+        for side in [Side::Before, Side::After] {
+            let mut found = vec![(DVec3::ZERO, DVec3::ZERO); places.len()];
+            subject.curve.tangents(&places, side, &mut found);
+            for (t, found) in places.iter().zip(found) {
+                let jet = subject.curve.evaluate(*t, side);
+                assert_eq!(found, (jet.point, jet.first), "{} at {t} {side:?}", subject.name);
+            }
+        }
+    }
+}
+
+#[test]
 fn parameters_outside_the_domain_are_its_ends() {
     for Subject { name, curve, .. } in Subject::all() {
         let domain = curve.domain();

@@ -75,6 +75,10 @@ impl Curve for AnyCurve {
         each_kind!(self, curve => curve.evaluate(t, side))
     }
 
+    fn tangents(&self, parameters: &[f64], side: Side, found: &mut [(DVec3, DVec3)]) {
+        each_kind!(self, curve => curve.tangents(parameters, side, found));
+    }
+
     fn joints(&self) -> Vec<f64> {
         each_kind!(self, curve => curve.joints())
     }

@@ -196,6 +196,18 @@ impl Curve for BezierSpline {
         self.pieces.scaled(index, &self.local_jet(index, self.pieces.local(index, t)))
     }
 
+    fn tangents(&self, parameters: &[f64], side: Side, found: &mut [(DVec3, DVec3)]) {
+        let mut index = 0;
+        for (t, found) in parameters.iter().zip(found) {
+            if !self.pieces.holds(index, *t, side) {
+                index = self.pieces.locate(*t, side);
+            }
+            let local = self.local_jet(index, self.pieces.local(index, *t));
+            let jet = self.pieces.scaled(index, &local);
+            *found = (jet.point, jet.first);
+        }
+    }
+
     fn joints(&self) -> Vec<f64> {
         self.joints.clone()
     }

@@ -133,6 +133,15 @@ pub trait Curve: Send + Sync {
     /// the domain is taken as the nearer end.
     fn evaluate(&self, t: f64, side: Side) -> Jet;
 
+    /// Points and first derivatives at many parameters, as [`Curve::evaluate`] gives them one by one: cheaper, most of
+    /// all where the parameters increase. `found` is as long as `parameters`.
+    fn tangents(&self, parameters: &[f64], side: Side, found: &mut [(DVec3, DVec3)]) {
+        for (t, found) in parameters.iter().zip(found) {
+            let jet = self.evaluate(*t, side);
+            *found = (jet.point, jet.first);
+        }
+    }
+
     /// Parameters strictly inside the domain, increasing, where the direction jumps, and every given point of
     /// a polyline. A discretization must keep these points.
     fn joints(&self) -> Vec<f64>;

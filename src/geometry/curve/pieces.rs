@@ -48,6 +48,16 @@ impl Pieces {
         }
     }
 
+    /// Whether a piece is the one that [`Pieces::locate`] finds for an inner parameter.
+    #[inline]
+    pub(crate) fn holds(&self, index: usize, t: f64, side: Side) -> bool {
+        let (start, end) = (self.breaks[index], self.breaks[index + 1]);
+        match side {
+            Side::After => start <= t && t < end,
+            Side::Before => start < t && t <= end,
+        }
+    }
+
     /// How many of the inner breaks, from the first on, stand `before` a parameter: a few steps from the place where
     /// it would be among equal pieces, then by halving.
     #[inline]

@@ -21,6 +21,13 @@ pub fn floor_large(number: f64) -> u64 {
     number as u64
 }
 
+/// The nearest whole number, halves away from zero; NaN gives 0, what is too great the greatest.
+#[must_use]
+#[expect(clippy::cast_possible_truncation, reason = "saturates, as stated")]
+pub(super) fn nearest(number: f64) -> i64 {
+    (number + 0.5_f64.copysign(number)) as i64
+}
+
 /// The nearest number of single precision.
 #[must_use]
 #[expect(clippy::cast_possible_truncation, reason = "rounds, as stated")]
@@ -45,12 +52,13 @@ pub fn count_of(subscript: usize) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use super::{floor_count, floor_index, single};
+    use super::{floor_count, floor_index, nearest, single};
 
     #[test]
     fn what_does_not_fit_saturates() {
         assert_eq!((floor_index(2.9), floor_index(-1.0), floor_index(f64::NAN)), (2, 0, 0));
         assert_eq!((floor_count(1e300), floor_count(3.0)), (u32::MAX, 3));
+        assert_eq!((nearest(2.5), nearest(-2.5), nearest(-0.4), nearest(f64::NAN)), (3, -3, 0, 0));
         assert_eq!(single(0.1), 0.1_f32);
     }
 }
