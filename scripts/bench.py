@@ -2,8 +2,10 @@
 """Sets Kiln beside its peers on the same work in one run: whole processes, medians, quality beside speed.
 
     scripts/bench.py                  vase, sweep and loft on a fixed grid, the vase within 0.1 mm, peak memory,
-                                      evaluation of curves, every spec of the gallery
-    scripts/bench.py --only vase      one part: vase, sweep, loft, tolerance, memory, curves or gallery
+                                      evaluation of curves, the teapot, a face at equal deviation, evaluation
+                                      of surfaces, every spec of the gallery
+    scripts/bench.py --only vase      one part: vase, sweep, loft, tolerance, memory, curves, teapot, face,
+                                      surfaces or gallery
     scripts/bench.py --large          memory up to an output of 1 GB
     scripts/bench.py --json FILE      the figures as JSON too
     scripts/bench.py --readme         also renews the tables between the markers in README.md
@@ -26,7 +28,7 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-from peers import evaluation, gallery, models, specs
+from peers import evaluation, gallery, models, specs, surfaces
 from peers.process import Runs, together
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -35,7 +37,7 @@ PYTHON = ROOT / ".venv" / "bin" / "python"
 CAD_PYTHON = ROOT / ".venv-peers" / "bin" / "python"
 KILN = Path(os.environ.get("KILN_BIN", ROOT / "target" / "release" / "kiln"))
 MARKERS = ("<!-- bench:begin -->", "<!-- bench:end -->")
-PARTS = ("vase", "sweep", "loft", "tolerance", "memory", "curves", "gallery")
+PARTS = ("vase", "sweep", "loft", "tolerance", "memory", "curves", "teapot", "face", "surfaces", "gallery")
 
 TOLERANCE = 1e-4  # meters: a tenth of a millimeter on a vase of two meters
 # CadQuery's own tolerance is steered until its measured deviation is Kiln's; its angle is set out of the way.
@@ -58,6 +60,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory(prefix="kiln-bench-") as name:
         folder = Path(name)
         specs.write(folder)
+        surfaces.write(folder)
         parts = {part: measure(part, folder, options) for part in PARTS if part in options.only}
     figures = {"machine": machine(), "date": date.today().isoformat(), "runs": options.runs, **parts}
     text = tables(figures)
@@ -87,9 +90,26 @@ def measure(part: str, folder: Path, options: argparse.Namespace) -> Part:
     if part == "curves":
         peer = [str(PYTHON), str(PEERS / "peer_curves.py")]
         return evaluation.measure(KILN, peer, folder, options.runs, tell)
+    if part in ("teapot", "face", "surfaces"):
+        return of_surfaces(part, folder, options.runs)
     if part == "gallery":
         return gallery.measure(KILN, ROOT / "specs", folder, options.runs, tell)
     return tolerance(folder) if part == "tolerance" else grid(part, folder, options.runs)
+
+
+def of_surfaces(part: str, folder: Path, runs: int) -> Part:
+    """Patches and NURBS beside their peers."""
+
+    def peer(python: Path, tool: str) -> list[str]:
+        return [str(python), str(PEERS / f"peer_{tool}.py")]
+
+    checker = [str(PYTHON), str(PEERS / "surface_quality.py")]
+    if part == "surfaces":
+        return surfaces.evaluation(KILN, peer(PYTHON, "surface"), folder, runs, tell)
+    if part == "face":
+        return surfaces.face(KILN, peer(CAD_PYTHON, "opencascade"), checker, folder, tell)
+    peers = [("Blender", peer(PYTHON, "blender"), "glb"), ("geomdl", peer(PYTHON, "geomdl"), "obj")]
+    return surfaces.teapot(KILN, peers, checker, folder, runs, tell)
 
 
 def grid(case: str, folder: Path, runs: int) -> Part:
@@ -228,6 +248,12 @@ def tables(figures: dict[str, Any]) -> str:
         blocks.append(memory_table(figures["memory"]["rows"]))
     if "curves" in figures:
         blocks.append(curves_table(figures["curves"]["rows"]))
+    if "teapot" in figures:
+        blocks.append(teapot_table(figures["teapot"]["rows"]))
+    if "face" in figures:
+        blocks.append(face_table(figures["face"]["rows"]))
+    if "surfaces" in figures:
+        blocks.append(surfaces_table(figures["surfaces"]["rows"]))
     if "gallery" in figures:
         blocks.append(gallery_table(figures["gallery"]["rows"]))
     return "\n\n".join(blocks)
@@ -302,6 +328,40 @@ def curves_table(rows: list[dict[str, Any]]) -> str:
         for row in rows
     ]  # fmt: skip
     return f"**curves** ({count(evaluation.POINTS)} points each)\n\n{markdown(head, body)}"
+
+
+def teapot_table(rows: list[dict[str, Any]]) -> str:
+    """The teapot, from script to file."""
+    head = ["teapot within a thousandth of its size", "ms", "times Kiln", "triangles", "bytes", "deviation"]
+    body = [
+        [
+            row["tool"], thousandths(row["seconds"]), ratio(row["times-kiln"]), count(row.get("triangles")),
+            count(row.get("bytes")), small(row.get("deviation")),
+        ]
+        if row["failure"] is None
+        else [row["tool"], "failed", *["-"] * (len(head) - 2)]
+        for row in rows
+    ]  # fmt: skip
+    return markdown(head, body)
+
+
+def face_table(rows: list[dict[str, Any]]) -> str:
+    """Triangles of one bicubic face at the deviation that was measured on Kiln's."""
+    head = ["B-spline face at equal deviation", "triangles", "measured deviation", "Kiln's share of it"]
+    body = [
+        [row["tool"], count(row["triangles"]), small(row["deviation"]), ratio(row["kiln-of-it"])]
+        if row["failure"] is None
+        else [row["tool"], "failed", *["-"] * (len(head) - 2)]
+        for row in rows
+    ]
+    return markdown(head, body)
+
+
+def surfaces_table(rows: list[dict[str, Any]]) -> str:
+    """Evaluation by surface."""
+    head = ["point and both first derivatives", "Kiln, ns", "geomdl, ns", "times Kiln"]
+    body = [[row["surface"], ratio(row["kiln"]), count(row["geomdl"]), ratio(row["times-kiln"])] for row in rows]
+    return markdown(head, body)
 
 
 def gallery_table(rows: list[dict[str, Any]]) -> str:

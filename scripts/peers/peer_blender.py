@@ -1,4 +1,4 @@
-"""Blender: the screw modifier, the curve bevel and a mesh of rings, exported by its own glTF exporter.
+"""Blender: the screw modifier, the curve bevel, a mesh of rings and NURBS surfaces, exported by its own glTF exporter.
 
 `peer_blender.py CASE OUT.glb`
 """
@@ -19,6 +19,7 @@ from models import (
     path,
     profile,
 )
+from nets import TEAPOT_STEPS, teapot
 
 
 def vase() -> None:
@@ -68,6 +69,29 @@ def loft() -> None:
     show(mesh)
 
 
+def pot() -> None:
+    """Each patch of the teapot as a NURBS surface; rows become one when they are joined as segments."""
+    for number, grid in enumerate(teapot()):
+        surface = bpy.data.curves.new(f"patch-{number}", "SURFACE")
+        surface.dimensions = "3D"
+        for row in grid:
+            line = surface.splines.new("NURBS")
+            line.points.add(len(row) - 1)
+            for at, point in zip(line.points, row, strict=True):
+                at.co, at.select = (*point, 1.0), True
+        item = show(surface)
+        bpy.context.view_layer.objects.active = item
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.curve.make_segment()
+        bpy.ops.object.mode_set(mode="OBJECT")
+        net = surface.splines[0]
+        for place, at in enumerate(net.points):
+            at.co = (*grid[place % 4][place // 4], 1.0)
+        net.order_u = net.order_v = 4
+        net.use_endpoint_u = net.use_endpoint_v = True
+        net.resolution_u = net.resolution_v = TEAPOT_STEPS // 4
+
+
 def show(data: bpy.types.ID) -> bpy.types.Object:
     """An object of the scene for mesh or curve data."""
     item = bpy.data.objects.new(data.name, data)
@@ -77,5 +101,5 @@ def show(data: bpy.types.ID) -> bpy.types.Object:
 
 if __name__ == "__main__":
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    {"vase": vase, "sweep": sweep, "loft": loft}[sys.argv[1]]()
+    {"vase": vase, "sweep": sweep, "loft": loft, "teapot": pot}[sys.argv[1]]()
     bpy.ops.export_scene.gltf(filepath=sys.argv[2], export_apply=True, export_animations=False)
