@@ -32,6 +32,10 @@ impl<P: Control> Net<P> {
         if self.heap.is_empty() { &mut self.inline[..self.count] } else { &mut self.heap }
     }
 
+    pub(super) fn columns(&self) -> usize {
+        self.columns
+    }
+
     fn rows(&self) -> usize {
         self.count / self.columns
     }

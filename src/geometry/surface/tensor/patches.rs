@@ -130,10 +130,16 @@ impl<P: Control> Patches<P> {
 
     /// Control points of one piece, row by row.
     #[inline]
-    pub(super) fn piece(&self, (column, row): (usize, usize)) -> &[P] {
+    pub(super) fn piece(&self, piece: (usize, usize)) -> &[P] {
         let size = (self.degree.0 + 1) * (self.degree.1 + 1);
-        let start = (row * self.u.count() + column) * size;
+        let start = self.number(piece) * size;
         &self.control[start..start + size]
+    }
+
+    /// The number of a piece, row by row.
+    #[inline]
+    pub(super) fn number(&self, (column, row): (usize, usize)) -> usize {
+        row * self.u.count() + column
     }
 
     /// The piece of a place, and the place in it from 0 to 1.

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::net::Net;
 use super::patches::{Part, Patches, PatchesError};
 use super::{Grid, TensorSpline, normal};
 use crate::geometry::curve::{Domain, Side};
@@ -19,6 +20,7 @@ pub struct PolynomialSurface {
     /// Size of the control net, which rounding is measured against.
     size: f64,
     joints: (Vec<f64>, Vec<f64>),
+    bends: Bends,
 }
 
 /// Derivatives on both sides of a line that differ by less than this share of their size come from a smooth
@@ -52,7 +54,8 @@ impl PolynomialSurface {
     pub(super) fn of_patches(patches: Patches<DVec3>) -> Self {
         let size = Bounds::of_points(patches.control().iter().copied()).diagonal();
         let joints = (joints(&patches), joints(&patches.transposed()));
-        Self { patches, size, joints }
+        let bends = Bends::new(&patches);
+        Self { patches, size, joints, bends }
     }
 
     /// Degrees in u and v.
@@ -91,16 +94,45 @@ impl PolynomialSurface {
 
     fn part_range(&self, part: &Part) -> SecondRange {
         let (across, up) = self.patches.spans(part.piece);
-        let hull = |net: super::net::Net<DVec3>, scale: f64| {
-            let net = net.restricted(part.u, part.v);
+        let hull = |order: usize, scale: f64| {
+            let (points, columns) = self.bends.piece(self.patches.number(part.piece), order);
+            let net = Net::new(points, columns).restricted(part.u, part.v);
             Bounds::of_points(net.points().iter().map(|point| *point / scale))
         };
-        let net = || self.patches.net(part.piece);
-        SecondRange {
-            uu: hull(net().derived_u().derived_u(), across * across),
-            uv: hull(net().derived_u().derived_v(), across * up),
-            vv: hull(net().derived_v().derived_v(), up * up),
-        }
+        SecondRange { uu: hull(0, across * across), uv: hull(1, across * up), vv: hull(2, up * up) }
+    }
+}
+
+/// Control points of the second derivatives of all pieces by their local parameters: twice by u, by u and v, and twice
+/// by v.
+#[derive(Clone, Debug, PartialEq)]
+struct Bends {
+    /// Points, and how many stand in a row; as many for every piece.
+    orders: [(Vec<DVec3>, usize); 3],
+    pieces: usize,
+}
+
+impl Bends {
+    fn new(patches: &Patches<DVec3>) -> Self {
+        let (columns, rows) = patches.count();
+        let pieces = || (0..rows).flat_map(|row| (0..columns).map(move |column| patches.net((column, row))));
+        let all = |derived: fn(Net<DVec3>) -> Net<DVec3>| {
+            let nets: Vec<Net<DVec3>> = pieces().map(derived).collect();
+            let points = nets.iter().flat_map(|net| net.points().iter().copied()).collect();
+            (points, nets[0].columns())
+        };
+        let orders = [
+            all(|net| net.derived_u().derived_u()),
+            all(|net| net.derived_u().derived_v()),
+            all(|net| net.derived_v().derived_v()),
+        ];
+        Self { orders, pieces: columns * rows }
+    }
+
+    fn piece(&self, number: usize, order: usize) -> (&[DVec3], usize) {
+        let (points, columns) = &self.orders[order];
+        let size = points.len() / self.pieces;
+        (&points[number * size..(number + 1) * size], *columns)
     }
 }
 
