@@ -14,7 +14,7 @@
 //! | `geometry::formula` | `geometry::number` |
 //! | `geometry::curve` | `geometry::number`, `geometry::formula` |
 //! | `geometry::mesh` | `geometry::number`, `geometry::planar` |
-//! | `geometry::surface` | `geometry::number`, `geometry::curve` |
+//! | `geometry::surface` | `geometry::number`, `geometry::formula`, `geometry::curve` |
 //! | `geometry::field` | `geometry::number` |
 //! | `geometry::map` | `geometry::number` |
 //! | `geometry::tessellate` | `geometry::number`, `geometry::planar`, `geometry::curve`, `geometry::mesh`, `geometry::surface`, `geometry::field`, `geometry::map` |

@@ -16,6 +16,7 @@ mod lofts;
 mod mutation;
 mod nets;
 mod operations;
+mod parametric;
 mod patches;
 mod paths;
 mod polygons;

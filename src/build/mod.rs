@@ -25,6 +25,7 @@ mod moving;
 mod node;
 mod operation;
 mod overlap;
+mod parametric;
 mod part;
 mod patch;
 mod path;

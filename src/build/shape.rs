@@ -118,6 +118,10 @@ impl Builder<'_> {
             Kind::Quadric(quadric) => self.quadric(quadric, span).map(here),
             Kind::Gordon(network) => self.gordon(network, span).map(here),
             Kind::HeightMap(map) => self.height_map(map, &definition.options).map(here),
+            Kind::Parametric(surface) => {
+                let both = self.shows_both_sides(&definition.options);
+                self.parametric(surface, span, both).map(here)
+            }
             Kind::Mesh(mesh) => self.mesh(mesh, span).map(here),
             Kind::Import(import) => self.import(import, span).map(here),
             Kind::Taper(taper) => self.taper(name, taper).map(here),

@@ -2,7 +2,10 @@
 
 use super::coons::{ThreeSidedSurface, TransfiniteSurface};
 use super::tensor::{PolynomialSurface, RationalSurface};
-use super::{LoftedSurface, RuledSurface, SecondJet, SecondRange, Surface, SurfaceJet, TranslationalSurface};
+use super::{
+    FormulaSurface, LoftedSurface, RuledSurface, SecondJet, SecondRange, Surface, SurfaceJet, ThickSide,
+    TranslationalSurface,
+};
 use crate::geometry::curve::{Domain, Side};
 
 /// A surface of any kind.
@@ -22,6 +25,10 @@ pub enum AnySurface {
     Transfinite(Box<TransfiniteSurface>),
     /// Through three curves.
     ThreeSided(Box<ThreeSidedSurface>),
+    /// Points by formulas.
+    Formula(Box<FormulaSurface>),
+    /// A side of a formula surface that has a thickness.
+    Thick(Box<ThickSide>),
 }
 
 macro_rules! each_kind {
@@ -34,6 +41,8 @@ macro_rules! each_kind {
             AnySurface::Rational($surface) => $body,
             AnySurface::Transfinite($surface) => $body,
             AnySurface::ThreeSided($surface) => $body,
+            AnySurface::Formula($surface) => $body,
+            AnySurface::Thick($surface) => $body,
         }
     };
 }

@@ -9,6 +9,7 @@ pub mod coons;
 mod deformation;
 mod deformed_path;
 mod extruded;
+mod formula;
 mod frame;
 mod joint;
 mod limit;
@@ -21,6 +22,7 @@ mod ruled;
 mod second;
 mod swept;
 pub mod tensor;
+mod thick;
 mod translational;
 pub mod triangle;
 
@@ -28,6 +30,7 @@ pub use any::AnySurface;
 pub use deformation::{AxialDeformation, AxialKind, Deformation, Warped};
 pub use deformed_path::{Line, PathDeformation};
 pub use extruded::ExtrudedSurface;
+pub use formula::{Closing, FormulaSurface, SurfaceFault};
 pub use frame::{Carry, Frame, FrameField, FrameRule};
 pub use joint::{PatchContinuity, Smoothness, SurfaceJoint, SurfaceJoints, SurfaceLine, joints};
 pub use lofted::{Across, CrossEnd, LoftedSurface};
@@ -41,6 +44,7 @@ pub use swept::{
     Carrier, Change, Law, Matched, Mix, Outline, Plane, Screw, Section, SectionPoint, Slope, Spot, Stand,
     Stations, SweptSurface, SweptWall,
 };
+pub use thick::{ThickSide, thickened};
 pub use translational::TranslationalSurface;
 
 use glam::DVec3;

@@ -281,6 +281,12 @@ codes! {
     NoSurface = "K0878";
     /// surfaces share no side
     ApartSurfaces = "K0879";
+    /// a formula surface does not close where it is said to
+    FormulaGap = "K0890";
+    /// a surface has only one side
+    OneSided = "K0891";
+    /// a surface is thicker than its bends have room for
+    TooThick = "K0892";
 
     /// a limit would be passed
     LimitPassed = "K0901";

@@ -345,6 +345,15 @@ examples! {
     ApartSurfaces: "Joined surfaces share sides: whole lines, the same points at the same shares of the way. The message prints how far the nearest sides are apart.",
         "[shape.a.patches]\ndegree = 1\ncontrol = [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 0]]]\n[shape.b.patches]\ndegree = 1\ncontrol = [[[1.1, 0, 0], [2, 0, 1]], [[1.1, 1, 0], [2, 1, 1]]]\n[shape.c.joined]\nof = [\"a\", \"b\"]" =>
         "[shape.a.patches]\ndegree = 1\ncontrol = [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 0]]]\n[shape.b.patches]\ndegree = 1\ncontrol = [[[1, 0, 0], [2, 0, 1]], [[1, 1, 0], [2, 1, 1]]]\n[shape.c.joined]\nof = [\"a\", \"b\"]";
+    FormulaGap: "`closed` says that a surface by formulas comes back to its start, straight or with a twist. It is held against the formulas: sines and cosines come back after 360 degrees, of half an angle after 720. The message says how far the ends are apart, and where most.",
+        "[shape.a.parametric]\nx = \"= cos(u)\"\ny = \"= v\"\nz = \"= sin(u)\"\nu = [0, 300]\nv = [0, 1]\nclosed = [\"u\"]" =>
+        "[shape.a.parametric]\nx = \"= cos(u)\"\ny = \"= v\"\nz = \"= sin(u)\"\nu = [0, 360]\nv = [0, 1]\nclosed = [\"u\"]";
+    OneSided: "A surface that closes with a twist, as a Moebius band or a Klein bottle, has no front: whoever walks around it comes back on its other side. Game engines show triangles from the front alone, so half of it would be missing. With a `thickness` it is a closed skin; or its material says `double-sided = true`.",
+        "[shape.a.parametric]\nx = \"= (2 + v * cos(u / 2)) * cos(u)\"\ny = \"= v * sin(u / 2)\"\nz = \"= (2 + v * cos(u / 2)) * sin(u)\"\nu = [0, 360]\nv = [-0.5, 0.5]" =>
+        "[shape.a.parametric]\nx = \"= (2 + v * cos(u / 2)) * cos(u)\"\ny = \"= v * sin(u / 2)\"\nz = \"= (2 + v * cos(u / 2)) * sin(u)\"\nu = [0, 360]\nv = [-0.5, 0.5]\nthickness = 0.05";
+    TooThick: "Half of a surface's thickness lies on each side of it. Where the surface bends with a smaller radius than that, the inner side would fold over itself.",
+        "[shape.a.parametric]\nx = \"= u\"\ny = \"= u ^ 2\"\nz = \"= v\"\nu = [-1, 1]\nv = [0, 1]\nthickness = 1.2" =>
+        "[shape.a.parametric]\nx = \"= u\"\ny = \"= u ^ 2\"\nz = \"= v\"\nu = [-1, 1]\nv = [0, 1]\nthickness = 0.2";
     LimitPassed: "The asset would have more triangles, vertices or bytes than [limits] or the machine's owner allows. Nothing was made: the count is known before memory is taken.",
         "[limits]\ntriangles = 100\n[shape.a.sphere]\nradius = 1" => "[shape.a]\nsegments = 8\n[shape.a.sphere]\nradius = 1\n[limits]\ntriangles = 200";
     NothingToShow: "A document needs a shape, and where it has nodes at least one of them must show one.",

@@ -112,7 +112,7 @@ fn plain(text: &str) -> String {
 }
 
 /// Names under which formulas stand.
-const TAKES_FORMULAS: [&str; 2] = ["formula", "implicit"];
+const TAKES_FORMULAS: [&str; 3] = ["formula", "implicit", "parametric"];
 
 /// Where a value stands in the document.
 #[derive(Clone, Copy)]

@@ -16,6 +16,7 @@ use crate::language::spec::kind::{Kinds, take_kind};
 use crate::language::spec::loft::Loft;
 use crate::language::spec::mesh::Mesh;
 use crate::language::spec::nurbs_surface::{BSplineSurface, NurbsSurface};
+use crate::language::spec::parametric::Parametric;
 use crate::language::spec::patch::{HermiteSurface, Patches};
 use crate::language::spec::point::{Scale, Segments};
 use crate::language::spec::polygon::{Polygon, Sheet};
@@ -159,6 +160,8 @@ kinds! {
         Joined(Joined) = "joined";
         /// Ground by a map of heights.
         HeightMap(HeightMap) = "height-map";
+        /// A surface by formulas of u and v.
+        Parametric(Parametric) = "parametric";
         /// Points and faces, written out.
         Mesh(Mesh) = "mesh";
         /// A model from a file.

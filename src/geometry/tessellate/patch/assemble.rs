@@ -33,6 +33,9 @@ pub(super) fn assemble(net: &Net<'_>, shape: &Patchwork, detail: &Detail) -> Res
     Ok(mesh)
 }
 
+/// Sums of unit normals shorter than this have no direction.
+const OPPOSITE: f64 = 1e-6;
+
 struct Assembly<'a, 'b> {
     net: &'a Net<'b>,
     detail: &'a Detail,
@@ -89,11 +92,10 @@ impl<'a, 'b> Assembly<'a, 'b> {
         for corner in 0..index(self.normals.len()) {
             let root = self.root(corner);
             let own = self.normals[corner as usize];
-            self.normals[corner as usize] = if sums[root as usize] == own {
-                own
-            } else {
-                sums[root as usize].try_normalize().unwrap_or(own)
-            };
+            // Along a seam with a twist normals are opposite, and their sum is rounding.
+            let sum = sums[root as usize];
+            self.normals[corner as usize] =
+                if sum == own || sum.length() < OPPOSITE { own } else { sum.normalize() };
         }
     }
 

@@ -132,8 +132,9 @@ fn mix((start, end): (f64, f64), part: f64) -> f64 {
 /// point: constructions that mean the same line leave about 1e-15, measured data far more than this.
 const SAME: f64 = 1e-9;
 
-/// Places along a side that are compared.
-const PROBES: [f64; 3] = [0.25, 0.5, 0.75];
+/// Places along a side that are compared: symmetric, since sides may run against each other, and at no plain share of it,
+/// where waves of formulas meet by chance.
+const PROBES: [f64; 5] = [0.118, 0.314, 0.5, 0.686, 0.882];
 
 impl<'a> Layout<'a> {
     /// Cost: O(b log b) for b blocks.
@@ -156,7 +157,7 @@ impl<'a> Layout<'a> {
                 [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|place| block.point(place))
             })
             .collect();
-        let probes: Vec<[DVec3; 3]> = self
+        let probes: Vec<[DVec3; 5]> = self
             .blocks
             .iter()
             .flat_map(|block| Rim::ALL.map(|rim| PROBES.map(|part| block.point(rim.place(part)))))
@@ -235,7 +236,7 @@ impl<'a> Layout<'a> {
 }
 
 /// Whether two sides run along one line, and if so whether they run against each other.
-fn alike(one: &[DVec3; 3], other: &[DVec3; 3], near: f64, with: bool, against: bool) -> Option<bool> {
+fn alike(one: &[DVec3; 5], other: &[DVec3; 5], near: f64, with: bool, against: bool) -> Option<bool> {
     let close = |a: &DVec3, b: &DVec3| a.distance(*b) <= near;
     if with && one.iter().zip(other).all(|(a, b)| close(a, b)) {
         return Some(false);
