@@ -152,6 +152,10 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
             Code::BadHole,
             "holes must lie inside the outline and apart from each other; a finer `tolerance` keeps them apart",
         ),
+        RealizeError::Tessellate(TessellateError::Tangled) => (
+            Code::TangledLines,
+            "cut it off where the lines that bound it lie further apart, or write a finer `tolerance`",
+        ),
         RealizeError::Tessellate(TessellateError::NoArea) => {
             (Code::NoArea, "a finer `tolerance` or more `segments` keep the outline open")
         }

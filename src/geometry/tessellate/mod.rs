@@ -157,6 +157,9 @@ pub enum TessellateError {
         /// x and z of that height.
         place: DVec2,
     },
+    /// Chords of lines that bound a curved face cross, however finely they are cut.
+    #[error("the lines that bound it come too close to each other")]
+    Tangled,
     /// The outline encloses no area.
     #[error("the outline encloses no area")]
     NoArea,

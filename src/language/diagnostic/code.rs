@@ -281,6 +281,8 @@ codes! {
     NoSurface = "K0878";
     /// surfaces share no side
     ApartSurfaces = "K0879";
+    /// lines that bound a curved face come too close to each other
+    TangledLines = "K0880";
     /// a formula surface does not close where it is said to
     FormulaGap = "K0890";
     /// a surface has only one side

@@ -345,6 +345,9 @@ examples! {
     ApartSurfaces: "Joined surfaces share sides: whole lines, the same points at the same shares of the way. The message prints how far the nearest sides are apart.",
         "[shape.a.patches]\ndegree = 1\ncontrol = [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 0]]]\n[shape.b.patches]\ndegree = 1\ncontrol = [[[1.1, 0, 0], [2, 0, 1]], [[1.1, 1, 0], [2, 1, 1]]]\n[shape.c.joined]\nof = [\"a\", \"b\"]" =>
         "[shape.a.patches]\ndegree = 1\ncontrol = [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 0]]]\n[shape.b.patches]\ndegree = 1\ncontrol = [[[1, 0, 0], [2, 0, 1]], [[1, 1, 0], [2, 1, 1]]]\n[shape.c.joined]\nof = [\"a\", \"b\"]";
+    TangledLines: "The lines that bound a curved face are cut into chords. Where two of them nearly touch, as where a surface runs along a side of its box, chords of one cross those of the other however short they are.",
+        "[shape.a.quadric]\nyy = 1\nyz = 1\nx = 1e-4\nwithin = { min = [-2, 0, 0], max = [2, 0.001, 4] }" =>
+        "[shape.a.quadric]\nyy = 1\nyz = 1\nx = 1e-4\nwithin = { min = [-2, -1, 0], max = [2, 1, 4] }";
     FormulaGap: "`closed` says that a surface by formulas comes back to its start, straight or with a twist. It is held against the formulas: sines and cosines come back after 360 degrees, of half an angle after 720. The message says how far the ends are apart, and where most.",
         "[shape.a.parametric]\nx = \"= cos(u)\"\ny = \"= v\"\nz = \"= sin(u)\"\nu = [0, 300]\nv = [0, 1]\nclosed = [\"u\"]" =>
         "[shape.a.parametric]\nx = \"= cos(u)\"\ny = \"= v\"\nz = \"= sin(u)\"\nu = [0, 360]\nv = [0, 1]\nclosed = [\"u\"]";

@@ -137,7 +137,7 @@ pub fn quadric(shape: &ClippedQuadric, detail: &Detail) -> Result<Tessellation, 
         }
         return Ok(Tessellation { mesh, deviation: made.deviation });
     }
-    Err(tangled())
+    Err(TessellateError::Tangled)
 }
 
 fn dressed(shape: &ClippedQuadric, job: &Job) -> Result<Made, TessellateError> {
@@ -179,9 +179,4 @@ fn walls(bounds: &Bounds) -> Vec<HalfSpace> {
 
 fn proved(bound: f64) -> Deviation {
     Deviation { bound, evidence: Evidence::Proved }
-}
-
-/// Chords of lines crossed though they were cut finer and finer.
-fn tangled() -> TessellateError {
-    TessellateError::Cap { reason: "its edges come too close to each other".to_owned() }
 }

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::judge::{FlatChart, SheetChart};
 use super::shell::{Face, Shell};
 use super::skeleton::{Body, Edge, Skeleton};
-use super::{Job, Made, SHEETS, proved, tangled};
+use super::{Job, Made, SHEETS, proved};
 use crate::geometry::field::quadric::{HalfSpace, QuadricForm, QuadricKind, Sheet};
 use crate::geometry::field::{Field, Quadric};
 use crate::geometry::mesh;
@@ -47,7 +47,7 @@ pub(super) fn in_walls(
             Err(Fault::Crossing) => job = job.finer(),
         }
     }
-    Err(tangled())
+    Err(TessellateError::Tangled)
 }
 
 /// Walls that pass the apex of a cone nearly go through it exactly; those that only touch it there are marked.

@@ -102,8 +102,7 @@ pub fn trimmed(shape: &TrimmedSurface, detail: &Detail) -> Result<Tessellation, 
         last = Some(made);
         cut = cut.finer();
     }
-    let tangled = || TessellateError::Cap { reason: "its edges come too close to each other".to_owned() };
-    last.ok_or_else(tangled)
+    last.ok_or(TessellateError::Tangled)
 }
 
 /// Everything about one attempt.
