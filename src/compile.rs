@@ -200,7 +200,8 @@ fn beyond_tolerance(scene: &scene::Scene, shapes: &[ShapeHandle], built: &Built)
             );
             Diagnostic::warning(Code::TightBend, message)
                 .at(place(built, *shape), "this shape")
-                .note("beside a sharp corner of a path a section that twists or bends has no room for more rows")
+                .note("where a surface folds, ends in a cusp, or turns sharply beside a corner, more triangles do not come nearer")
+                .help("round or move that place, or write the `tolerance` that is enough for it")
         })
     };
     scene.geometries.iter().zip(shapes).filter_map(beyond).collect()

@@ -268,7 +268,7 @@ impl Builder<'_> {
 /// What to do about a file that is no map.
 fn hint(error: &HeightsError) -> Option<&'static str> {
     match error {
-        HeightsError::TooLarge { .. } => Some("scale it down, or raise `image-pixels` in [limits]"),
+        HeightsError::TooLarge { .. } => Some("scale it down; where [limits] lowers `image-pixels`, write more there"),
         HeightsError::Look { .. } | HeightsError::NotPng => {
             Some("save it as a grey PNG, for heights with 16 bits")
         }

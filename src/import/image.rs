@@ -85,7 +85,7 @@ impl ImageError {
     pub fn hint(&self) -> Option<String> {
         let hint = match self {
             Self::Format { .. } => "convert it to PNG",
-            Self::TooLarge { .. } => "scale it down, or raise `image-pixels` in [limits]",
+            Self::TooLarge { .. } => "scale it down; where [limits] lowers `image-pixels`, write more there",
             Self::Damaged { .. } => "save it again from the program that made it",
             Self::Components { .. } => "convert it from CMYK to RGB",
         };
