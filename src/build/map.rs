@@ -268,7 +268,9 @@ impl Builder<'_> {
 /// What to do about a file that is no map.
 fn hint(error: &HeightsError) -> Option<&'static str> {
     match error {
-        HeightsError::TooLarge { .. } => Some("scale it down; where [limits] lowers `image-pixels`, write more there"),
+        HeightsError::TooLarge { .. } => {
+            Some("scale it down; where [limits] lowers `image-pixels`, write more there")
+        }
         HeightsError::Look { .. } | HeightsError::NotPng => {
             Some("save it as a grey PNG, for heights with 16 bits")
         }
