@@ -25,9 +25,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 SAMPLES = 48  # places along each side of a patch from which the search starts
-ROUNDS = 16
-NEAREST = 100  # samples among which the nearest patches are found
-TRIED = 3  # patches
+ROUNDS = 16  # of descent
 QUADRATURE = 400
 
 
@@ -57,21 +55,24 @@ def patches(case: str) -> Patches:
 
 
 def deviation(points: Array, surface: Patches) -> float:
-    """The largest distance of points to the patches, by descent from the nearest sample of each of the nearest ones.
-
-    Where patches run into each other the nearest sample may lie on the wrong one.
-    """
+    """The largest distance of points to the patches, by descent from the nearest sample of every patch that is near."""
     line = np.linspace(0.0, 1.0, SAMPLES)
-    count = len(surface.control)
-    patch, v, u = (a.ravel() for a in np.meshgrid(np.arange(count), line, line, indexing="ij"))
-    starts = cKDTree(surface.at(patch, u, v, (0, 0))).query(points, k=NEAREST)[1]
-    left = np.ones(starts.shape, dtype=bool)
+    v, u = (a.ravel() for a in np.meshgrid(line, line, indexing="ij"))
+    found, apart = [], []
+    for number in range(len(surface.control)):
+        samples = surface.at(np.full(len(u), number), u, v, (0, 0))
+        found.append(cKDTree(samples).query(points))
+        grid = samples.reshape(SAMPLES, SAMPLES, 3)
+        steps = [np.linalg.norm(np.diff(grid, axis=axis), axis=2).max() for axis in (0, 1)]
+        apart.append(float(np.hypot(*steps)))
+    least = np.min([distance for distance, _ in found], axis=0)
     nearest = np.full(len(points), np.inf)
-    for _ in range(min(TRIED, count)):
-        first = left.argmax(axis=1)
-        start = starts[np.arange(len(points)), first]
-        nearest = np.minimum(nearest, refined(points, surface, (patch[start], u[start], v[start])))
-        left &= patch[starts] != patch[start][:, None]
+    for number, (distance, sample) in enumerate(found):
+        # What is on a patch is no further from its nearest sample than samples are apart.
+        near = np.flatnonzero(distance <= least + apart[number])
+        start = sample[near]
+        place = (np.full(len(near), number), u[start], v[start])
+        nearest[near] = np.minimum(nearest[near], refined(points[near], surface, place))
     return float(nearest.max())
 
 
