@@ -209,15 +209,7 @@ def cadquery_at(deviation: float, folder: Path) -> dict[str, Any]:
     if failed:
         return timing(failed)
     found = measured_quality("vase", [entry.output for entry in entries], folder).values()
-    return {"tool": "CadQuery", "triangles": between(list(found), deviation), "deviation": deviation}
-
-
-def between(found: list[dict[str, Any]], deviation: float) -> float:
-    """Triangles at a deviation on the line through the two nearest measurements, in logarithms."""
-    nearest = sorted(found, key=lambda one: abs(math.log(one["deviation"] / deviation)))[:2]
-    (x0, y0), (x1, y1) = ((math.log(one["deviation"]), math.log(one["triangles"])) for one in nearest)
-    slope = (y1 - y0) / (x1 - x0) if abs(x1 - x0) > 1e-9 else 0.0
-    return math.exp(y0 + slope * (math.log(deviation) - x0))
+    return {"tool": "CadQuery", "triangles": surfaces.at(list(found), deviation), "deviation": deviation}
 
 
 def memory(folder: Path, steps: list[float]) -> Part:
