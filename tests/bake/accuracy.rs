@@ -19,8 +19,8 @@ const SPHERE: &str = "[shape.a.sphere]\nradius = 1";
 const TORUS: &str = "[shape.a.revolve]\nprofile = { circle = { radius = 0.3, center = [1, 0] } }";
 const COIL: &str = "[shape.a.sweep]\nprofile = { circle = { radius = 0.1 } }\npath = { helix = { radius = 1, pitch = 0.5, turns = 1 } }";
 
-/// The slope of a line fitted to logarithms.
-fn exponent(points: &[(f64, f64)]) -> f64 {
+/// The slope of a line fitted to logarithms: the power of the first numbers that the second ones follow.
+pub(super) fn exponent(points: &[(f64, f64)]) -> f64 {
     let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (ln(*x), ln(*y))).collect();
     let count = logs.len() as f64;
     let (x, y) = logs.iter().fold((0.0, 0.0), |sum, (x, y)| (sum.0 + x / count, sum.1 + y / count));

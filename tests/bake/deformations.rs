@@ -3,8 +3,9 @@
 use core::f64::consts::PI;
 
 use kiln::compile::Options;
-use kiln::geometry::number::{ln, pow};
+use kiln::geometry::number::pow;
 
+use super::accuracy::exponent;
 use super::{Baked, assert_near, bake, compile};
 
 /// The volume of a deformed solid, which must still be one, within its bound where that is quickly measured.
@@ -96,13 +97,10 @@ fn volumes_converge_over_three_decades() {
                 let compiled = compile(&format!("tolerance = {tolerance}\n{text}"), &Options::default());
                 let report = compiled.unwrap_or_else(|found| panic!("{found}")).report.expect("a report");
                 let found = report.shapes[0].facts.volume.expect("closed");
-                (ln(tolerance), ln((found - exact).abs()))
+                (tolerance, (found - exact).abs())
             })
             .collect();
-        let count = points.len() as f64;
-        let (x, y) = points.iter().fold((0.0, 0.0), |sum, (x, y)| (sum.0 + x / count, sum.1 + y / count));
-        let across: f64 = points.iter().map(|(a, b)| (a - x) * (b - y)).sum();
-        let exponent = across / points.iter().map(|(a, _)| (a - x) * (a - x)).sum::<f64>();
+        let exponent = exponent(&points);
         assert!(exponent >= 0.9, "{text}: {exponent}: {points:?}");
     }
 }

@@ -4,9 +4,10 @@ use core::f64::consts::PI;
 
 use kiln::compile::Options;
 use kiln::geometry::curve::{Curve as _, Side};
-use kiln::geometry::number::{cos, ln, pow, sin, sin_cos};
+use kiln::geometry::number::{cos, pow, sin, sin_cos};
 use kiln::language::Document;
 
+use super::accuracy::exponent;
 use super::{assert_near, bake, compile};
 
 /// The volume of a solid, which must be one, within its bound where that is quickly measured.
@@ -171,13 +172,10 @@ fn volumes_converge_over_three_decades() {
             let text = format!("tolerance = {tolerance}\n[shape.a.loft]\n{CIRCLES}");
             let compiled = compile(&text, &Options::default()).unwrap_or_else(|found| panic!("{found}"));
             let found = compiled.report.expect("a report").shapes[0].facts.volume.expect("closed");
-            (ln(tolerance), ln((found - exact).abs()))
+            (tolerance, (found - exact).abs())
         })
         .collect();
-    let count = points.len() as f64;
-    let (x, y) = points.iter().fold((0.0, 0.0), |sum, (x, y)| (sum.0 + x / count, sum.1 + y / count));
-    let across: f64 = points.iter().map(|(a, b)| (a - x) * (b - y)).sum();
-    let exponent = across / points.iter().map(|(a, _)| (a - x) * (a - x)).sum::<f64>();
+    let exponent = exponent(&points);
     assert!(exponent >= 0.9, "{exponent}: {points:?}");
 }
 

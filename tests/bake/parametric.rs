@@ -3,9 +3,10 @@
 use core::f64::consts::PI;
 
 use kiln::compile::Options;
-use kiln::geometry::number::{cos, ln, sin};
+use kiln::geometry::number::{cos, sin};
 use kiln::report::facts::MeshFacts;
 
+use super::accuracy::exponent;
 use super::{assert_near, bake, compile};
 
 const SPHERE: &str = "[shape.a.parametric]\nx = '= sin(v) * sin(u)'\ny = '= cos(v)'\nz = '= sin(v) * cos(u)'\n\
@@ -26,15 +27,6 @@ const KLEIN: &str = "[shape.a.parametric]\n\
 fn facts(text: &str) -> MeshFacts {
     let compiled = compile(text, &Options::default()).unwrap_or_else(|found| panic!("{found}"));
     compiled.report.expect("a report was asked for").shapes[0].facts.clone()
-}
-
-/// The slope of a line fitted to logarithms.
-fn exponent(points: &[(f64, f64)]) -> f64 {
-    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (ln(*x), ln(*y))).collect();
-    let count = logs.len() as f64;
-    let (x, y) = logs.iter().fold((0.0, 0.0), |sum, (x, y)| (sum.0 + x / count, sum.1 + y / count));
-    let across: f64 = logs.iter().map(|(a, b)| (a - x) * (b - y)).sum();
-    across / logs.iter().map(|(a, _)| (a - x) * (a - x)).sum::<f64>()
 }
 
 #[test]

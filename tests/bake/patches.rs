@@ -3,13 +3,13 @@
 use core::f64::consts::PI;
 
 use kiln::compile::Options;
-use kiln::geometry::number::ln;
 use kiln::geometry::surface::Surface;
 use kiln::language::Document;
 use kiln::language::source::MemoryFiles;
 use kiln::model::Recipe;
 use serde_json::Value;
 
+use super::accuracy::exponent;
 use super::{assert_near, bake, compile};
 
 const CONE: &str = "[shape.a.ruled]\nfrom = { circle = { radius = 0.5 } }\nto = [0, 0, 1.5]";
@@ -84,13 +84,10 @@ fn areas_converge_over_three_decades() {
                 let compiled = compile(&format!("tolerance = {tolerance}\n{text}"), &Options::default());
                 let compiled = compiled.unwrap_or_else(|found| panic!("{found}"));
                 let found = compiled.report.expect("a report").shapes[0].facts.area;
-                (ln(tolerance), ln((found - area).abs()))
+                (tolerance, (found - area).abs())
             })
             .collect();
-        let count = points.len() as f64;
-        let (x, y) = points.iter().fold((0.0, 0.0), |sum, (x, y)| (sum.0 + x / count, sum.1 + y / count));
-        let across: f64 = points.iter().map(|(a, b)| (a - x) * (b - y)).sum();
-        let exponent = across / points.iter().map(|(a, _)| (a - x) * (a - x)).sum::<f64>();
+        let exponent = exponent(&points);
         assert!(exponent >= 0.9, "{text}: {exponent}: {points:?}");
     }
 }
