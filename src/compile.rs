@@ -1,6 +1,7 @@
 //! The pipeline, one line a stage.
 
 mod notice;
+mod solid;
 
 use notice::noticed;
 
@@ -140,6 +141,9 @@ fn refusals(built: &Built, errors: Vec<(ShapeHandle, RealizeError)>) -> Vec<Diag
 }
 
 fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnostic {
+    if let RealizeError::Solid { shape, part, fault } = error {
+        return solid::refused(built, *shape, *part, fault);
+    }
     let name = &built.model.shape(shape).name;
     let (code, help) = match error {
         RealizeError::Limit { .. }
@@ -172,6 +176,7 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
         RealizeError::Deform(_) => {
             (Code::NoLength, "write another `axis`, or `from` and `to` inside the shape")
         }
+        RealizeError::Solid { .. } => (Code::NoSolid, "see the parts of it"),
         RealizeError::Polygons(_) => (Code::BadMesh, "check the indices of the faces"),
     };
     Diagnostic::error(code, format!("shape `{name}` cannot be made: {error}"))

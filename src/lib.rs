@@ -14,6 +14,7 @@
 //! | `geometry::formula` | `geometry::number` |
 //! | `geometry::curve` | `geometry::number`, `geometry::formula` |
 //! | `geometry::mesh` | `geometry::number`, `geometry::planar` |
+//! | `geometry::solid` | `geometry::number`, `geometry::mesh` |
 //! | `geometry::surface` | `geometry::number`, `geometry::formula`, `geometry::curve` |
 //! | `geometry::field` | `geometry::number` |
 //! | `geometry::map` | `geometry::number` |

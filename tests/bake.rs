@@ -25,6 +25,7 @@ mod quadrics;
 mod refusals;
 mod shading;
 mod shapes;
+mod solids;
 mod sweeps;
 mod triangles;
 mod trimmed;

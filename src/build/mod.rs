@@ -36,6 +36,7 @@ mod quadric;
 mod ruled;
 mod scaling;
 mod shape;
+mod solid;
 mod spline;
 mod svg;
 mod sweep;

@@ -3,6 +3,7 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::primitive::primitive;
+use super::solid::SetOf;
 use super::{Builder, placement};
 use crate::geometry::mesh;
 use crate::language::diagnostic::{Code, Diagnostic};
@@ -145,6 +146,14 @@ impl Builder<'_> {
                 let of = of?;
                 Some(here(Recipe::Assembly(copies(array).into_iter().map(|map| (of, map)).collect())))
             }
+            Kind::Union(set) => self.solid_set(name, set, SetOf::Union, span).map(here),
+            Kind::Difference(set) => self.solid_set(name, set, SetOf::Difference, span).map(here),
+            Kind::Intersection(set) => self.solid_set(name, set, SetOf::Intersection, span).map(here),
+            Kind::Solid(solid) => self.solid_formula(solid, span).map(here),
+            Kind::Cut(cut) => self.cut(name, cut, span).map(here),
+            Kind::Hull(hull) => self.hull(name, hull, span).map(here),
+            Kind::MinkowskiRound(round) => self.minkowski_round(name, round, span).map(here),
+            Kind::Shell(shell) => self.shell(name, shell, span).map(here),
             Kind::Group(group) => {
                 let parts: Vec<_> = (group.of.iter().enumerate())
                     .map(|(index, part)| self.shape_of(name, index, part))

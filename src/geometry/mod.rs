@@ -11,5 +11,6 @@ pub mod mesh;
 pub mod number;
 pub mod planar;
 pub mod profile;
+pub mod solid;
 pub mod surface;
 pub mod tessellate;

@@ -7,12 +7,14 @@
 mod deform;
 mod material;
 mod shape;
+mod solid;
 
 pub use deform::{AxialBending, Bending, PathBending};
 pub use material::{
     AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, Texture, Wrap,
 };
 pub use shape::{Density, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode};
+pub use solid::{Hollow, KeptSide, PlaneCut, SolidOperation, SolidRecipe};
 
 use glam::{DQuat, DVec3};
 

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec2, DVec3};
 
-use super::{Bending, MaterialHandle};
+use super::{Bending, MaterialHandle, SolidRecipe};
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::tessellate::{
@@ -73,6 +73,8 @@ pub enum Recipe {
         /// The map.
         by: Bending,
     },
+    /// Closed shapes as solids.
+    Solid(SolidRecipe),
     /// Other shapes, each under maps; more than one map makes as many copies.
     Assembly(Vec<(ShapeHandle, DAffine3)>),
 }

@@ -14,7 +14,7 @@ use crate::geometry::mesh::{PolygonMesh, VertexIndex};
 use crate::geometry::number::sin_cos_degrees;
 use crate::geometry::surface::{Deformation, Rim, Surface as _, SweptSurface};
 use crate::geometry::tessellate::{ClippedQuadric, Patchwork, Revolution, Route};
-use crate::model::{Model, Recipe, ShapeHandle};
+use crate::model::{KeptSide, Model, Recipe, ShapeHandle, SolidOperation, SolidRecipe};
 
 /// A face that is flat, so that its triangles are exact until a map bends them.
 #[derive(Clone, Debug)]
@@ -206,6 +206,23 @@ pub(super) fn periods(model: &Model, handle: ShapeHandle, all: &mut Vec<(f64, f6
         }
         Recipe::Assembly(parts) => parts.iter().for_each(|(part, _)| periods(model, *part, all)),
         Recipe::Deformed { of, .. } => periods(model, *of, all),
+        Recipe::Solid(solid) => of_solid(model, solid, all),
         other => all.extend((0..super::source::source_count(other)).map(|_| (NEVER, NEVER))),
+    }
+}
+
+/// Those of the parts of a solid, and of the surface that it adds.
+fn of_solid(model: &Model, solid: &SolidRecipe, all: &mut Vec<(f64, f64)>) {
+    const NEVER: (f64, f64) = (f64::INFINITY, f64::INFINITY);
+    let times = match &solid.operation {
+        SolidOperation::Hull(_) | SolidOperation::Round(_) => return all.push(NEVER),
+        SolidOperation::Cut(cut) if cut.keep == KeptSide::Both => 2,
+        _ => 1,
+    };
+    for _ in 0..times {
+        solid.parts.iter().for_each(|part| periods(model, *part, all));
+        if !matches!(solid.operation, SolidOperation::Combine(_)) {
+            all.push(NEVER);
+        }
     }
 }

@@ -14,6 +14,7 @@ mod nearest;
 mod node;
 mod reach;
 mod shape;
+mod solid;
 mod source;
 mod swept;
 
@@ -22,6 +23,7 @@ pub use source::{Source, Sources, Window, sources};
 use thiserror::Error;
 
 use crate::geometry::mesh::polygon::PolygonError;
+use crate::geometry::solid::SolidFault;
 use crate::geometry::tessellate::{DeformError, TessellateError};
 use crate::model::{Model, ShapeHandle};
 use crate::scene::Scene;
@@ -45,6 +47,16 @@ pub enum RealizeError {
     /// A map that bends the shape cannot be applied.
     #[error(transparent)]
     Deform(DeformError),
+    /// A solid operation has no result.
+    #[error("{fault}")]
+    Solid {
+        /// The solid.
+        shape: ShapeHandle,
+        /// The part of it that is to blame, if one is.
+        part: Option<ShapeHandle>,
+        /// Why.
+        fault: SolidFault,
+    },
     /// More vertices or bytes than allowed.
     #[error("this would make at least {needed} {what}, and the limit is {limit}")]
     Limit {

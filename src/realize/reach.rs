@@ -8,7 +8,7 @@ use glam::{DAffine3, DVec3};
 use super::cloud::{cloud, points};
 use super::source::Extents;
 use crate::geometry::number::{Bounds, hypot};
-use crate::model::{Model, Recipe, ShapeHandle};
+use crate::model::{Model, Recipe, ShapeHandle, SolidOperation, SolidRecipe};
 
 /// Shapes that are looked at themselves; in groups of groups of more, the rest by their boxes.
 const MOST: u32 = 10_000;
@@ -54,8 +54,25 @@ impl Search<'_> {
                 let points = bent(self.model, self.extents, *of).into_iter();
                 moved(&map, of_points(points.map(|point| bending.apply(point).point), local))
             }
+            Recipe::Solid(solid) => self.solid(solid, &map, direction),
             recipe => moved(&map, of_recipe(recipe, local)),
         }
+    }
+}
+
+impl Search<'_> {
+    /// As far as the parts of which something is left, and what is grown.
+    fn solid(&mut self, solid: &SolidRecipe, map: &DAffine3, direction: DVec3) -> (f64, f64) {
+        let parts = solid.lasting().into_iter().map(|part| self.shape(part, map, direction));
+        let (mut low, mut high) = parts
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |all, part| (all.0.min(part.0), all.1.max(part.1)));
+        if let SolidOperation::Hull(points) = &solid.operation {
+            for place in points.iter().map(|point| map.transform_point3(*point).dot(direction)) {
+                (low, high) = (low.min(place), high.max(place));
+            }
+        }
+        let growth = solid.growth() * (map.matrix3.transpose() * direction).length();
+        (low - growth, high + growth)
     }
 }
 
@@ -103,6 +120,15 @@ impl Gathering<'_> {
             Recipe::Deformed { of, .. } => {
                 if let Ok(bending) = self.extents.map(handle) {
                     self.shape(*of, &|point| placed(bending.apply(point).point));
+                }
+            }
+            Recipe::Solid(solid) => {
+                solid.lasting().into_iter().for_each(|part| self.shape(part, &placed));
+                if let SolidOperation::Hull(points) = &solid.operation {
+                    self.all.extend(points.iter().copied().map(placed));
+                }
+                if solid.growth() > 0.0 {
+                    self.all.extend(box_lattice(&self.extents.bounds(handle)).into_iter().map(map));
                 }
             }
             recipe => self.all.extend(cloud(recipe).into_iter().map(placed)),

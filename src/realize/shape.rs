@@ -32,22 +32,22 @@ pub(super) struct Made {
 
 /// Makes shapes of one model.
 pub(super) struct Maker<'a> {
-    model: &'a Model,
-    coarser: f64,
+    pub(super) model: &'a Model,
+    pub(super) coarser: f64,
     /// How far each shape reaches.
-    extents: Extents,
+    pub(super) extents: Extents,
     /// Triangles that each shape has at least.
     least: Vec<u64>,
 }
 
 /// What a shape gets from those that use it, as lengths in the space where it is placed.
 #[derive(Clone, Copy)]
-struct Inherited {
+pub(super) struct Inherited {
     /// What they ask for, unless it asks for another itself.
-    tolerance: Option<f64>,
+    pub(super) tolerance: Option<f64>,
     /// What rounding to single precision will add.
-    rounding: f64,
-    uv: bool,
+    pub(super) rounding: f64,
+    pub(super) uv: bool,
 }
 
 impl Inherited {
@@ -58,6 +58,20 @@ impl Inherited {
             tolerance: self.tolerance.map(|tolerance| tolerance / stretch),
             rounding: self.rounding / stretch,
             ..self
+        }
+    }
+}
+
+impl Made {
+    /// Nothing.
+    pub(super) fn empty() -> Self {
+        Self {
+            mesh: Mesh::default(),
+            wire: Wire::default(),
+            materials: Vec::new(),
+            deviation: Deviation::NONE,
+            tolerance: None,
+            notes: Vec::new(),
         }
     }
 }
@@ -80,7 +94,7 @@ impl<'a> Maker<'a> {
         self.part(handle, Inherited { tolerance: self.model.tolerance, rounding, uv }, &mut first_source)
     }
 
-    fn part(
+    pub(super) fn part(
         &self,
         handle: ShapeHandle,
         inherited: Inherited,
@@ -95,6 +109,9 @@ impl<'a> Maker<'a> {
             }
             Recipe::Deformed { of, .. } => {
                 self.deformed((handle, *of), wanted.within(&shape.options.placement), next_source)?
+            }
+            Recipe::Solid(recipe) => {
+                self.solid(handle, recipe, wanted.within(&shape.options.placement), next_source)?
             }
             recipe => {
                 let mut made = self.leaf(handle, wanted)?;
@@ -171,7 +188,7 @@ impl<'a> Maker<'a> {
                 });
                 return self.finished(shape, made.map_err(|error| self.in_terms_of_limits(error))?);
             }
-            Recipe::Assembly(_) | Recipe::Deformed { .. } => {
+            Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) => {
                 Ok(Tessellation { mesh: Mesh::default(), deviation: Deviation::NONE })
             }
         };
@@ -299,14 +316,7 @@ impl<'a> Maker<'a> {
         inherited: Inherited,
         next_source: &mut u32,
     ) -> Result<Made, RealizeError> {
-        let mut whole = Made {
-            mesh: Mesh::default(),
-            wire: Wire::default(),
-            materials: Vec::new(),
-            deviation: Deviation::NONE,
-            tolerance: None,
-            notes: Vec::new(),
-        };
+        let mut whole = Made::empty();
         let mut total = Cost::default();
         for copies in parts.chunk_by(|(one, _), (next, _)| one == next) {
             let (handle, first) = copies[0];
@@ -334,11 +344,11 @@ fn has_fixed_grid(shape: &Shape) -> bool {
     shape.options.density.is_some() || divided || sampled
 }
 
-fn cost(made: &Made) -> Cost {
+pub(super) fn cost(made: &Made) -> Cost {
     Cost::of(&made.mesh).plus(Cost::of_wire(&made.wire))
 }
 
-fn join(whole: &mut Made, part: &Made) {
+pub(super) fn join(whole: &mut Made, part: &Made) {
     let offset = mesh::index(whole.materials.len());
     whole.mesh.append(&part.mesh, offset);
     whole.wire.append(&part.wire, offset);
@@ -387,7 +397,7 @@ pub(super) fn stretch(matrix: &DMat3) -> f64 {
 }
 
 /// Gives every triangle its own normal; vertices are shared no more.
-fn flatten(mut made: Made) -> Made {
+pub(super) fn flatten(mut made: Made) -> Made {
     let mesh = &mut made.mesh;
     let mut vertices: Vec<Vertex> = Vec::with_capacity(mesh.triangles.len() * 3);
     for triangle in &mut mesh.triangles {
@@ -446,6 +456,7 @@ fn shows_texture(model: &Model, handle: ShapeHandle) -> bool {
         let of_parts = match &shape.recipe {
             Recipe::Assembly(parts) => parts.iter().any(|(part, _)| shows[part.0 as usize]),
             Recipe::Deformed { of, .. } => shows[of.0 as usize],
+            Recipe::Solid(solid) => solid.parts.iter().any(|part| shows[part.0 as usize]),
             Recipe::Polygons { materials, .. } => materials.iter().flatten().any(textured),
             _ => false,
         };

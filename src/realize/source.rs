@@ -17,7 +17,7 @@ use crate::geometry::surface::{AnySurface, Deformation, Surface as _, SweptWall}
 use crate::geometry::tessellate::{
     ClippedQuadric, Closing, DeformError, Density, HeightMap, RoundedBox, Route, discretize,
 };
-use crate::model::{Model, Recipe, ShapeHandle};
+use crate::model::{KeptSide, Model, Recipe, ShapeHandle, SolidOperation, SolidRecipe};
 
 /// How many surfaces the anchors of a recipe tell apart.
 pub(super) fn source_count(recipe: &Recipe) -> u32 {
@@ -36,7 +36,7 @@ pub(super) fn source_count(recipe: &Recipe) -> u32 {
         | Recipe::Sheet(_) => 1,
         Recipe::Wire(curves) => mesh::index(curves.len()),
         Recipe::Quadric(_) => ClippedQuadric::SOURCES,
-        Recipe::Assembly(_) | Recipe::Deformed { .. } => 0,
+        Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) => 0,
     }
 }
 
@@ -65,6 +65,8 @@ enum Kind {
     Line(AnyCurve),
     /// Where a polynomial is zero.
     Quadric(Quadric),
+    /// A surface that follows from others and has no form of its own: that of a hull, of a rounded shape, of a hollow.
+    Derived,
 }
 
 /// All surfaces of a shape, by the source of an anchor.
@@ -99,6 +101,12 @@ impl Sources {
             }
         }
         found
+    }
+
+    /// Whether each has a form of its own, so that distances to it can be told.
+    #[must_use]
+    pub fn known(&self) -> bool {
+        self.0.iter().all(Source::is_known)
     }
 
     /// Whether any of them is curved.
@@ -142,9 +150,40 @@ impl Collector<'_> {
                     Source { kind, map, back: map.inverse() }
                 }));
             }
+            Recipe::Solid(solid) => self.collect_solid(solid, &map, bends, all),
             recipe => {
                 let kinds = kinds(recipe, bends).into_iter();
                 all.extend(kinds.map(|kind| Source { kind, map, back: map.inverse() }));
+            }
+        }
+    }
+}
+
+impl Collector<'_> {
+    /// The surfaces of the parts of a solid, and the one that it adds.
+    fn collect_solid(&self, solid: &SolidRecipe, map: &DAffine3, bends: bool, all: &mut Vec<Source>) {
+        let one = |kind: Kind, map: DAffine3| Source { kind, map, back: map.inverse() };
+        let parts = |map: &DAffine3, all: &mut Vec<Source>| {
+            solid.parts.iter().for_each(|part| self.collect(*part, map, bends, all));
+        };
+        match &solid.operation {
+            SolidOperation::Combine(_) => parts(map, all),
+            SolidOperation::Shell(_) => {
+                parts(map, all);
+                all.push(one(Kind::Derived, *map));
+            }
+            SolidOperation::Hull(_) | SolidOperation::Round(_) => all.push(one(Kind::Derived, *map)),
+            SolidOperation::Cut(cut) => {
+                let plane = Flat::Plane(cut.above.point, cut.above.normal);
+                // Sides that are moved apart have surfaces of their own, those below first.
+                let shift =
+                    |way: f64| *map * DAffine3::from_translation(cut.above.normal * (way * cut.gap / 2.0));
+                let shifts =
+                    if cut.keep == KeptSide::Both { vec![shift(-1.0), shift(1.0)] } else { vec![*map] };
+                for map in shifts {
+                    parts(&map, all);
+                    all.push(one(Kind::Flat(if bends { plane.clone() } else { Flat::Exact }), map));
+                }
             }
         }
     }
@@ -199,7 +238,7 @@ fn kinds(recipe: &Recipe, bends: bool) -> Vec<Kind> {
             (0..ClippedQuadric::SOURCES).map(kind).collect()
         }
         Recipe::Wire(curves) => curves.iter().map(|curve| Kind::Line(curve.clone())).collect(),
-        Recipe::Assembly(_) | Recipe::Deformed { .. } => Vec::new(),
+        Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) => Vec::new(),
     }
 }
 
@@ -269,6 +308,14 @@ pub(super) fn nearest_near(curve: &impl Curve, point: DVec3, corners: [f64; 3]) 
 }
 
 impl Source {
+    fn is_known(&self) -> bool {
+        match &self.kind {
+            Kind::Derived => false,
+            Kind::Bent(bent) => bent.inner.is_known(),
+            _ => true,
+        }
+    }
+
     /// Whether one of these places lies on a side of a patch, which others may have too.
     fn touches_rims(&self, places: &[(f64, f64); 3]) -> bool {
         match &self.kind {
@@ -309,7 +356,7 @@ impl Source {
     pub fn distance(&self, point: DVec3, window: &Window) -> f64 {
         let local = self.back.transform_point3(point);
         let away = match &self.kind {
-            Kind::Flat(Flat::Exact) => return 0.0,
+            Kind::Flat(Flat::Exact) | Kind::Derived => return 0.0,
             Kind::Flat(face) => face.distance(local),
             Kind::Bent(bent) => bent.distance(local, window),
             Kind::Rounded(shape) => shape.distance(local),
@@ -381,12 +428,24 @@ pub(super) fn extents(model: &Model) -> Extents {
                 map = Some(found);
                 own
             }
+            Recipe::Solid(solid) => of_solid(&all, solid),
             recipe => extent(recipe),
         };
         all.boxes.push(mapped(&own, &shape.options.placement));
         all.maps.push(map);
     }
     all
+}
+
+/// The box of a solid: that of the parts of which something is left, as far as it grows.
+fn of_solid(all: &Extents, solid: &SolidRecipe) -> Bounds {
+    let lasting = solid.lasting();
+    let mut bounds = lasting.iter().map(|part| all.bounds(*part)).fold(Bounds::EMPTY, Bounds::union);
+    if let SolidOperation::Hull(points) = &solid.operation {
+        bounds = points.iter().fold(bounds, |bounds, point| bounds.with_point(*point));
+    }
+    let growth = solid.growth().max(0.0);
+    Bounds { min: bounds.min - growth, max: bounds.max + growth }
 }
 
 /// The box around a mapped box.
@@ -453,7 +512,7 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
         Recipe::Wire(curves) => curves.iter().map(along).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Quadric(shape) => shape.bounds(),
         Recipe::Trimmed(shape) => shape.bounds(),
-        Recipe::Assembly(_) | Recipe::Deformed { .. } => Bounds::EMPTY,
+        Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) => Bounds::EMPTY,
     }
 }
 

@@ -28,25 +28,29 @@ const SAMPLES: [[f64; 3]; 13] = [
 
 /// The greatest distance from samples of the written triangles to the exact surface, metres. Each sample looks
 /// for its nearest point near the parameters of its triangle's corners, so the result is local:
-/// a sheet that lies near by does not hide a gap.
+/// a sheet that lies near by does not hide a gap. None where a surface has no form of its own to be far from.
 #[must_use]
 pub fn measure_deviation(
     geometry: &Geometry<'_>,
     known: &WrittenGeometry,
     model: &Model,
     handle: ShapeHandle,
-) -> f64 {
+) -> Option<f64> {
     let sources = sources(model, handle);
+    if !sources.known() {
+        return None;
+    }
     let lines = of_lines(geometry, known, &sources);
     if !sources.curved() || known.anchors.len() != geometry.positions.len() {
-        return lines;
+        return Some(lines);
     }
     // The greatest of a set is the same in any order, so threads do not matter.
-    (0..geometry.indices.len() / 3)
+    let greatest = (0..geometry.indices.len() / 3)
         .into_par_iter()
         .with_min_len(256)
         .map(|triangle| of_triangle(triangle, geometry, &known.anchors, &sources))
-        .reduce(|| lines, f64::max)
+        .reduce(|| lines, f64::max);
+    Some(greatest)
 }
 
 /// The greatest distance from samples of written lines to their curves.

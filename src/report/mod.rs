@@ -210,7 +210,8 @@ pub fn measure(
     let mut facts = IndexMap::new();
     for (known, handle) in written.geometries.iter().zip(shapes) {
         let measured =
-            about.measure.then(|| measure_deviation(&file.geometries[known.mesh], known, model, *handle));
+            (about.measure.then(|| measure_deviation(&file.geometries[known.mesh], known, model, *handle)))
+                .flatten();
         facts.insert(known.name.clone(), shape_facts(&file, known, (model, *handle), measured)?);
     }
     let nodes = nodes(&file);

@@ -26,24 +26,41 @@ pub fn nearest_within(curve: &impl Curve, point: DVec3, from: f64, to: f64) -> (
             (best, nearest) = (k, found);
         }
     }
+    let start = (nearest, at(best));
     let (low, high) = (at(best.saturating_sub(1)), at((best + 1).min(SAMPLES)));
-    let mut t = at(best);
+    // The best sample may be a corner of the curve, which has another derivative to each side.
+    let before = polished(curve, point, (low, at(best)), (start, Side::Before));
+    let after = polished(curve, point, (at(best), high), (start, Side::After));
+    let (square, t) = if after.0 < before.0 { after } else { before };
+    (square.sqrt(), t)
+}
+
+/// Newton's method from one end of a range into it; the square of the distance and the parameter.
+fn polished(
+    curve: &impl Curve,
+    point: DVec3,
+    (from, to): (f64, f64),
+    ((mut nearest, mut t), side): ((f64, f64), Side),
+) -> (f64, f64) {
     for _ in 0..8 {
-        let jet = curve.evaluate(t, Side::Before);
+        let jet = curve.evaluate(t, side);
         let away = jet.point - point;
         let slope = away.dot(jet.first);
         let bend = jet.first.length_squared() + away.dot(jet.second);
         if bend <= 0.0 {
             break;
         }
-        let next = (t - slope / bend).clamp(low.min(high), low.max(high));
-        let reached = square(next);
+        let next = (t - slope / bend).clamp(from.min(to), from.max(to));
+        if next == t {
+            break;
+        }
+        let reached = curve.point(next).distance_squared(point);
         if reached >= nearest {
             break;
         }
         (t, nearest) = (next, reached);
     }
-    (nearest.sqrt(), t)
+    (nearest, t)
 }
 
 #[cfg(test)]
@@ -51,7 +68,7 @@ mod tests {
     use glam::DVec3;
 
     use super::distance_within;
-    use crate::geometry::curve::EllipseArc;
+    use crate::geometry::curve::{EllipseArc, Polyline};
     use crate::geometry::number::{cos_degrees, sin_degrees};
 
     #[test]
@@ -64,6 +81,20 @@ mod tests {
                 let place = f64::from(k) / 40.0;
                 let found = distance_within(&arc, point, (place - 0.05).max(0.0), (place + 0.03).min(1.0));
                 assert!((found - (radius - 0.5).abs()).abs() < 1e-12, "{angle} {radius} {found}");
+            }
+        }
+    }
+
+    /// From a corner the nearest point is looked for to both sides.
+    #[test]
+    fn a_range_may_begin_at_a_corner() {
+        let corner = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0)];
+        let line = Polyline::new(corner.to_vec(), false).expect("three points");
+        for share in [0.01, 0.02, 0.06, 0.5] {
+            let up = DVec3::new(1.0, share, 0.0);
+            let left = DVec3::new(1.0 - share, 0.0, 0.0);
+            for (point, from, to) in [(up, 1.0, 2.0), (left, 0.0, 1.0), (up, 0.0, 2.0), (left, 0.0, 2.0)] {
+                assert!(distance_within(&line, point, from, to) < 1e-12, "{point} from {from} to {to}");
             }
         }
     }

@@ -290,6 +290,19 @@ codes! {
     /// a surface is thicker than its bends have room for
     TooThick = "K0892";
 
+    /// an expression of solids cannot be read
+    SolidSyntax = "K0894";
+    /// a shape is not closed where a solid is needed
+    NotClosed = "K0895";
+    /// a shape is inside out, or encloses no volume
+    InsideOut = "K0896";
+    /// a shape crosses itself where a solid is needed
+    CrossesItself = "K0897";
+    /// nothing is left of a solid
+    NoSolid = "K0898";
+    /// a shape has no flat face in a plane
+    NoFaceThere = "K0899";
+
     /// a limit would be passed
     LimitPassed = "K0901";
     /// the result has nothing to show
@@ -306,6 +319,9 @@ codes! {
     BelowBase = "K0907";
     /// scattered points make no map
     MapPoints = "K0908";
+
+    /// this build of Kiln lacks a feature
+    MissingFeature = "K0920";
 
     /// an assertion does not hold
     AssertionFailed = "K0951";

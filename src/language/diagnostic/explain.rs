@@ -357,6 +357,24 @@ examples! {
     TooThick: "Half of a surface's thickness lies on each side of it. Where the surface bends with a smaller radius than that, the inner side would fold over itself.",
         "[shape.a.parametric]\nx = \"= u\"\ny = \"= u ^ 2\"\nz = \"= v\"\nu = [-1, 1]\nv = [0, 1]\nthickness = 1.2" =>
         "[shape.a.parametric]\nx = \"= u\"\ny = \"= u ^ 2\"\nz = \"= v\"\nu = [-1, 1]\nv = [0, 1]\nthickness = 0.2";
+    SolidSyntax: "An expression of solids has names of shapes with `+`, `-` or `&` between them, and parentheses. Names may have hyphens in them, so a minus sign stands between spaces.",
+        "[shape.a.box]\nsize = [2, 2, 2]\n[shape.b.sphere]\nradius = 1.2\n[shape.c.solid]\nof = \"a - \"" =>
+        "[shape.a.box]\nsize = [2, 2, 2]\n[shape.b.sphere]\nradius = 1.2\n[shape.c.solid]\nof = \"a - b\"";
+    NotClosed: "Solid operations need shapes that enclose something: each edge has a face on both sides, and neighbors look the same way. The message shows where it is not so.",
+        "[shape.a.box]\nsize = [2, 2, 2]\n[shape.b.plane]\nsize = [1, 1]\n[shape.c.difference]\nof = [\"a\", \"b\"]" =>
+        "[shape.a.box]\nsize = [2, 2, 2]\n[shape.b.box]\nsize = [1, 3, 1]\n[shape.c.difference]\nof = [\"a\", \"b\"]";
+    InsideOut: "The faces of a shape look inward, so that it would be everything but what it is meant to be; or it encloses no volume at all. List the corners of its faces the other way round.",
+        "[shape.a.box]\nsize = [1, 1, 1]\n[shape.b.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]\nfaces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]\n[shape.c.union]\nof = [\"a\", \"b\"]" =>
+        "[shape.a.box]\nsize = [1, 1, 1]\n[shape.b.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]\nfaces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]\n[shape.c.union]\nof = [\"a\", \"b\"]";
+    CrossesItself: "What lies inside of a skin that crosses itself cannot be told. Put it together from parts that do not, as a union.",
+        "[shape.a.box]\nsize = [1, 1, 1]\n[shape.b.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.2, 0.2, -1]]\nfaces = [[0, 2, 1], [0, 1, 4], [0, 4, 2], [1, 3, 4], [4, 3, 2], [1, 2, 3]]\n[shape.c.union]\nof = [\"a\", \"b\"]" =>
+        "[shape.a.box]\nsize = [1, 1, 1]\n[shape.b.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]\nfaces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]\n[shape.c.union]\nof = [\"a\", \"b\"]";
+    NoSolid: "Shapes that only touch have nothing in common, and of a shape without itself nothing is left. A wall thicker than half of the shape leaves no hollow.",
+        "[shape.a.box]\nsize = [1, 1, 1]\n[shape.b.copy]\nof = \"a\"\n[shape.c.difference]\nof = [\"a\", \"b\"]" =>
+        "[shape.a.box]\nsize = [1, 1, 1]\n[shape.b]\nat = [0.5, 0, 0]\n[shape.b.copy]\nof = \"a\"\n[shape.c.difference]\nof = [\"a\", \"b\"]";
+    NoFaceThere: "A hollow opens through flat faces: `open` names the plane that one lies in, and its normal looks out of the shape.",
+        "[shape.a.box]\nsize = [2, 2, 2]\n[shape.b.shell]\nof = \"a\"\nthickness = 0.2\nopen = [{ normal = [0, 1, 0], point = [0, 0.9, 0] }]" =>
+        "[shape.a.box]\nsize = [2, 2, 2]\n[shape.b.shell]\nof = \"a\"\nthickness = 0.2\nopen = [{ normal = [0, 1, 0], point = [0, 1, 0] }]";
     LimitPassed: "The asset would have more triangles, vertices or bytes than [limits] or the machine's owner allows. Nothing was made: the count is known before memory is taken.",
         "[limits]\ntriangles = 100\n[shape.a.sphere]\nradius = 1" => "[shape.a]\nsegments = 8\n[shape.a.sphere]\nradius = 1\n[limits]\ntriangles = 200";
     NothingToShow: "A document needs a shape, and where it has nodes at least one of them must show one.",
@@ -373,6 +391,8 @@ examples! {
         "[shape.a.height-map]\nmap = { grid = { rows = [[1, -1], [1, 2]] } }\nsize = [1, 1]\nclose = \"base\"" => "[shape.a.height-map]\nmap = { grid = { rows = [[1, -1], [1, 2]] } }\nsize = [1, 1]\nclose = \"base\"\nbase = -2";
     MapPoints: "Scattered points make a map when they are at different places and not all on one line.",
         "[shape.a.height-map]\nmap = { points = { points = [[0, 0, 1], [1, 1, 2], [2, 2, 3]] } }\nsize = [1, 1]" => "[shape.a.height-map]\nmap = { points = { points = [[0, 0, 1], [1, 1, 2], [0, 2, 3]] } }\nsize = [1, 1]";
+    MissingFeature: "Kiln was built without an optional part that the document needs. Cargo features turn such parts on: `csg` has the solid operations. The command line has all of them; a build script that leaves out the default features names those that it needs.",
+        "" => "";
     AssertionFailed: "What [assert] demands does not hold of the result. Nothing was written.",
         "[shape.a.box]\nsize = [1, 1, 1]\n[assert]\ntriangles = 10" => "[shape.a.box]\nsize = [1, 1, 1]\n[assert]\ntriangles = 12";
     UnknownFact: "Keys of [assert] are paths of the report: `triangles`, `shapes.NAME.area`, `totals.draw-calls`. With one shape its facts need no path.",

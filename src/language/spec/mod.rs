@@ -49,6 +49,8 @@ mod scaling;
 mod schema;
 mod section;
 mod shape;
+mod solid;
+mod solid_expression;
 mod spanned;
 mod spline;
 mod spline_end;
@@ -109,6 +111,8 @@ pub use reference::{
 pub use ruled::{End, Ruled, Translational};
 pub use scaling::{Blend, Factor, ScaleStation, Scaling};
 pub use shape::{Shape, ShapeDefinition, ShapeOptions, Smoothing, Uv};
+pub use solid::{Cut, Hull, Keep, MinkowskiRound, Shell, SolidFormula, SolidSet, WallSide};
+pub use solid_expression::SolidExpression;
 pub use spanned::Sp;
 pub use spline::{Bezier, NaturalSpline, Parameters};
 pub use spline_end::{FunctionSpline, Spline, SplineEnd};

@@ -111,7 +111,13 @@ impl<'a> Reader<'a> {
     /// Notes that the definition in hand uses a name of a family.
     pub(crate) fn uses(&mut self, family: Family, name: &str, span: Span) {
         let user = self.user.clone();
-        self.uses.push(Use { family, name: name.to_owned(), span, user });
+        self.uses.push(Use { family, name: name.to_owned(), span, user, quoted: true });
+    }
+
+    /// Notes a name inside a text; `exact` tells whether the span is that of the name alone.
+    pub(crate) fn uses_inside(&mut self, family: Family, name: &str, span: Span, exact: bool) {
+        let user = self.user.clone();
+        self.uses.push(Use { family, name: name.to_owned(), span, user, quoted: !exact });
     }
 }
 

@@ -55,6 +55,8 @@ pub(crate) struct Use {
     pub(crate) span: Span,
     /// The definition that uses it.
     pub(crate) user: Option<(Family, String)>,
+    /// Whether the span holds a whole text with its quotes, and not a name inside one.
+    pub(crate) quoted: bool,
 }
 
 /// The curve that a field asks for.

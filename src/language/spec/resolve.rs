@@ -72,7 +72,12 @@ fn unknown(one: &Use, names: &Names) -> Diagnostic {
     let message = format!("there is no {}", titled(one.family, &one.name));
     let report = Diagnostic::error(Code::UnknownName, message).at(one.span, "not defined");
     if let Some(near) = closest(&one.name, names.list(one.family)) {
-        return report.suggest(one.span, format!("\"{near}\""), format!("did you mean `{near}`?"));
+        let written = if one.quoted { format!("\"{near}\"") } else { near.to_owned() };
+        return report.suggest(one.span, written, format!("did you mean `{near}`?"));
+    }
+    let parts: Vec<&str> = one.name.split('-').collect();
+    if !one.quoted && parts.len() > 1 && parts.iter().all(|part| names.find(one.family, part).is_some()) {
+        return report.suggest(one.span, parts.join(" - "), "put spaces around the minus sign");
     }
     let known: Vec<_> = names.list(one.family).collect();
     match known.len() {

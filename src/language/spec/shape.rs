@@ -29,6 +29,7 @@ use crate::language::spec::reader::{Fields, Read, Reader};
 use crate::language::spec::reference::MaterialName;
 use crate::language::spec::ruled::{Ruled, Translational};
 use crate::language::spec::schema::Schemas;
+use crate::language::spec::solid::{Cut, Hull, MinkowskiRound, Shell, SolidFormula, SolidSet};
 use crate::language::spec::spanned::Sp;
 use crate::language::spec::sweep::Sweep;
 use crate::language::spec::trimmed::Trimmed;
@@ -182,6 +183,22 @@ kinds! {
         Array(Array) = "array";
         /// Several shapes as one mesh; each keeps its material.
         Group(Group) = "group";
+        /// Everything that is in any of several solids.
+        Union(SolidSet) = "union";
+        /// A solid without others.
+        Difference(SolidSet) = "difference";
+        /// Everything that is in all of several solids.
+        Intersection(SolidSet) = "intersection";
+        /// Solids put together by an expression.
+        Solid(SolidFormula) = "solid";
+        /// A shape cut by a plane.
+        Cut(Cut) = "cut";
+        /// The smallest convex body around shapes and points.
+        Hull(Hull) = "hull";
+        /// A solid grown or shrunk by a ball.
+        MinkowskiRound(MinkowskiRound) = "minkowski-round";
+        /// A solid hollowed out.
+        Shell(Shell) = "shell";
     }
 }
 
