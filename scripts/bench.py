@@ -3,9 +3,9 @@
 
     scripts/bench.py                  vase, sweep and loft on a fixed grid, the vase within 0.1 mm, peak memory,
                                       evaluation of curves, the teapot, a face at equal deviation, evaluation
-                                      of surfaces, every spec of the gallery
+                                      of surfaces, booleans, every spec of the gallery
     scripts/bench.py --only vase      one part: vase, sweep, loft, tolerance, memory, curves, teapot, face,
-                                      surfaces or gallery
+                                      surfaces, booleans or gallery
     scripts/bench.py --large          memory up to an output of 1 GB
     scripts/bench.py --json FILE      the figures as JSON too
     scripts/bench.py --readme         also renews the tables between the markers in README.md
@@ -28,7 +28,7 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-from peers import evaluation, gallery, models, specs, surfaces
+from peers import booleans, evaluation, gallery, models, specs, surfaces
 from peers.process import Runs, together
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -37,7 +37,7 @@ PYTHON = ROOT / ".venv" / "bin" / "python"
 CAD_PYTHON = ROOT / ".venv-peers" / "bin" / "python"
 KILN = Path(os.environ.get("KILN_BIN", ROOT / "target" / "release" / "kiln"))
 MARKERS = ("<!-- bench:begin -->", "<!-- bench:end -->")
-PARTS = ("vase", "sweep", "loft", "tolerance", "memory", "curves", "teapot", "face", "surfaces", "gallery")
+PARTS = ("vase", "sweep", "loft", "tolerance", "memory", "curves", "teapot", "face", "surfaces", "booleans", "gallery")
 
 TOLERANCE = 1e-4  # meters: a tenth of a millimeter on a vase of two meters
 # CadQuery's own tolerance is steered until its measured deviation is Kiln's; its angle is set out of the way.
@@ -92,6 +92,12 @@ def measure(part: str, folder: Path, options: argparse.Namespace) -> Part:
         return evaluation.measure(KILN, peer, folder, options.runs, tell)
     if part in ("teapot", "face", "surfaces"):
         return of_surfaces(part, folder, options.runs)
+    if part == "booleans":
+        peers = [
+            ("manifold-3d", ["node", str(PEERS / "peer_booleans.mjs")]),
+            ("manifold3d", [str(PYTHON), str(PEERS / "peer_booleans.py")]),
+        ]
+        return booleans.measure(KILN, peers, folder, options.runs, tell)
     if part == "gallery":
         return gallery.measure(KILN, ROOT / "specs", folder, options.runs, tell)
     return tolerance(folder) if part == "tolerance" else grid(part, folder, options.runs)
@@ -246,6 +252,8 @@ def tables(figures: dict[str, Any]) -> str:
         blocks.append(face_table(figures["face"]["rows"]))
     if "surfaces" in figures:
         blocks.append(surfaces_table(figures["surfaces"]["rows"]))
+    if "booleans" in figures:
+        blocks.append(booleans_table(figures["booleans"]["rows"]))
     if "gallery" in figures:
         blocks.append(gallery_table(figures["gallery"]["rows"]))
     return "\n\n".join(blocks)
@@ -353,6 +361,21 @@ def surfaces_table(rows: list[dict[str, Any]]) -> str:
     """Evaluation by surface."""
     head = ["point and both first derivatives", "Kiln, ns", "geomdl, ns", "times Kiln"]
     body = [[row["surface"], ratio(row["kiln"]), count(row["geomdl"]), ratio(row["times-kiln"])] for row in rows]
+    return markdown(head, body)
+
+
+def booleans_table(rows: list[dict[str, Any]]) -> str:
+    """One ball without another by all tools."""
+    head = ["two balls of 100 352 triangles, difference", "ms", "of the fastest other", "cpu ms", "peak MB"]
+    body = [
+        [
+            row["tool"], thousandths(row["seconds"]), ratio(row["of-fastest"]), thousandths(row["cpu"]),
+            millions(row["peak"]),
+        ]
+        if row["failure"] is None
+        else [row["tool"], "failed", *["-"] * (len(head) - 2)]
+        for row in rows
+    ]  # fmt: skip
     return markdown(head, body)
 
 
