@@ -166,6 +166,9 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
         RealizeError::Tessellate(TessellateError::BelowBase { .. }) => {
             (Code::BelowBase, "write a lower `base`, or raise the heights with `range`")
         }
+        RealizeError::Tessellate(TessellateError::NothingKept) => {
+            (Code::NothingKept, "write other thresholds: all masks must hold at once, over some area")
+        }
         RealizeError::Deform(DeformError::Folds { .. }) => (
             Code::FoldsOver,
             "bend less, or over a greater length, or a thinner shape; `around` moves the axis",

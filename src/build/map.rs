@@ -14,7 +14,7 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{
     Between, FilePath, Map, MapCombine, MapDefinition, MapFormula, MapGrid, MapNoise, MapOperation,
-    MapPoints, MapRaw, MapReference, RawNumber, Scatter, Sp,
+    MapPoints, MapRaw, MapReference, NoData, RawNumber, Scatter, Sp,
 };
 
 /// Numbers row by row, and how many stand in a row.
@@ -41,23 +41,36 @@ impl Builder<'_> {
     }
 
     fn map(&mut self, map: &MapDefinition, span: Span) -> Option<Arc<GridField>> {
-        let (columns, values) = match &map.kind {
+        let gaps = map.options.no_data.as_ref().map(|no_data| no_data.value);
+        let (columns, mut values) = match &map.kind {
             Map::Image(image) => {
                 let limit = self.spec.limits.image_pixels;
-                self.file_heights(&image.file, Code::MapImage, |bytes| heights::png(bytes, limit))?
+                self.file_heights(&image.file, gaps, Code::MapImage, |bytes| heights::png(bytes, limit))?
             }
-            Map::Raw(raw) => self.raw_heights(raw)?,
-            Map::Grid(grid) => self.grid_heights(grid)?,
+            Map::Raw(raw) => self.raw_heights(raw, gaps)?,
+            Map::Grid(grid) => self.grid_heights(grid, gaps)?,
             Map::Points(points) => self.scattered(points)?,
-            Map::Formula(formula) => self.formula_heights(formula)?,
+            Map::Formula(formula) => self.formula_heights(formula, gaps)?,
             Map::Noise(noise) => self.noise_heights(noise, span)?,
             Map::Combine(combine) => self.combined(combine)?,
         };
+        if let Some(NoData::Number(number)) = gaps {
+            values.iter_mut().filter(|value| **value == number).for_each(|value| *value = f64::NAN);
+        }
+        // What has no value by now was allowed to have none.
+        let unknown: Vec<bool> = values.iter().map(|value| !value.is_finite()).collect();
+        if !unknown.is_empty() && !unknown.contains(&false) {
+            let report = Diagnostic::error(Code::NoValue, "no sample of this map has a value")
+                .at(span, "nothing but holes")
+                .help("check `no-data`");
+            self.report(report);
+            return None;
+        }
         let interpolation = match map.options.interpolation.value {
             Between::Bilinear => Interpolation::Bilinear,
             Between::Bicubic => Interpolation::Bicubic,
         };
-        match GridField::new(columns, values, interpolation) {
+        match GridField::with_gaps(columns, values, unknown, interpolation) {
             Ok(field) => Some(Arc::new(field)),
             Err(error) => {
                 self.report(match error {
@@ -87,6 +100,7 @@ impl Builder<'_> {
     fn file_heights(
         &mut self,
         file: &Sp<FilePath>,
+        gaps: Option<NoData>,
         code: Code,
         read: impl FnOnce(&[u8]) -> Result<Heights, HeightsError>,
     ) -> Option<Grid> {
@@ -98,7 +112,7 @@ impl Builder<'_> {
             }
         };
         match read(&bytes) {
-            Ok(heights) => self.with_all_values(heights, file),
+            Ok(heights) => self.with_values(heights, gaps, file),
             Err(error) => {
                 let message = format!("{} cannot be a map: {error}", file.value.written);
                 let code =
@@ -113,8 +127,13 @@ impl Builder<'_> {
         }
     }
 
-    fn with_all_values(&mut self, heights: Heights, file: &Sp<FilePath>) -> Option<Grid> {
-        let Heights { columns, values, no_data } = heights;
+    /// The numbers of a file. Those without a value are errors, or NaN where there may be gaps.
+    fn with_values(&mut self, heights: Heights, gaps: Option<NoData>, file: &Sp<FilePath>) -> Option<Grid> {
+        let Heights { columns, mut values, no_data } = heights;
+        if gaps.is_some() {
+            values.iter_mut().filter(|value| Some(**value) == no_data).for_each(|value| *value = f64::NAN);
+            return Some((columns, values));
+        }
         let lost = values.iter().position(|value| !value.is_finite() || Some(*value) == no_data);
         let Some(at) = lost else { return Some((columns, values)) };
         let (row, column) = (at / columns, at % columns);
@@ -127,12 +146,12 @@ impl Builder<'_> {
             format!("row {row}, column {column} of {} {why} ({})", file.value.written, show(values[at]));
         let report = Diagnostic::error(Code::NoValue, message)
             .at(file.span, "this file")
-            .help("cut out a part of the grid without gaps, or fill them in the program that made it");
+            .help("write `no-data = \"marked\"` beside the kind of the map to leave holes there, or fill them in the program that made it");
         self.report(report);
         None
     }
 
-    fn raw_heights(&mut self, raw: &MapRaw) -> Option<Grid> {
+    fn raw_heights(&mut self, raw: &MapRaw, gaps: Option<NoData>) -> Option<Grid> {
         let number = match raw.number.value {
             RawNumber::U8 => heights::RawNumber::U8,
             RawNumber::U16 => heights::RawNumber::U16,
@@ -142,13 +161,15 @@ impl Builder<'_> {
         };
         let (size, skip) = ([raw.columns.value, raw.rows.value], raw.skip.value);
         let limit = self.spec.limits.image_pixels;
-        self.file_heights(&raw.file, Code::MapFile, |bytes| heights::raw(bytes, size, (number, skip), limit))
+        self.file_heights(&raw.file, gaps, Code::MapFile, |bytes| {
+            heights::raw(bytes, size, (number, skip), limit)
+        })
     }
 
-    fn grid_heights(&mut self, grid: &MapGrid) -> Option<Grid> {
+    fn grid_heights(&mut self, grid: &MapGrid, gaps: Option<NoData>) -> Option<Grid> {
         if let Some(file) = &grid.file {
             let limit = self.spec.limits.image_pixels;
-            return self.file_heights(file, Code::MapFile, |bytes| heights::ascii_grid(bytes, limit));
+            return self.file_heights(file, gaps, Code::MapFile, |bytes| heights::ascii_grid(bytes, limit));
         }
         let rows = grid.rows.as_ref()?;
         Some((rows.columns(), rows.items().map(|number| number.value).collect()))
@@ -181,7 +202,7 @@ impl Builder<'_> {
         Some(sampled([written.columns.value, written.rows.value], from, to, |x, y| field.value(x, y)))
     }
 
-    fn formula_heights(&mut self, written: &MapFormula) -> Option<Grid> {
+    fn formula_heights(&mut self, written: &MapFormula, gaps: Option<NoData>) -> Option<Grid> {
         self.allow_samples(written.columns.value, written.rows.value, written.columns.span)?;
         let mut compiler = Compiler::new(&["x", "y"]);
         let output = match compiler.add(&written.f.value) {
@@ -198,7 +219,8 @@ impl Builder<'_> {
             let [value] = formula.evaluate::<f64, 1>(&[x, y]);
             value
         });
-        let Some(at) = grid.1.iter().position(|value| !value.is_finite()) else { return Some(grid) };
+        let lost = grid.1.iter().position(|value| !value.is_finite()).filter(|_| gaps.is_none());
+        let Some(at) = lost else { return Some(grid) };
         let place = |k: usize, count: u32, from: f64, to: f64| {
             show(from + (to - from) * (k as f64 / f64::from(count - 1)))
         };
@@ -248,15 +270,17 @@ impl Builder<'_> {
             let [right, bottom] = fields[k].extent();
             let x = right * (i as f64 / (columns - 1) as f64);
             let y = bottom * (j as f64 / (rows - 1) as f64);
-            weight(k) * fields[k].value(x, y)
+            if fields[k].knows_at(x, y) { weight(k) * fields[k].value(x, y) } else { f64::NAN }
         };
         let operation = written.operation.value;
         let join = |one: f64, other: f64| match operation {
             MapOperation::Add => one + other,
             MapOperation::Subtract => one - other,
             MapOperation::Multiply => one * other,
-            MapOperation::Min => one.min(other),
-            MapOperation::Max => one.max(other),
+            // The functions of the standard library would take a number instead of no value.
+            MapOperation::Min if one < other || one.is_nan() => one,
+            MapOperation::Max if one > other || one.is_nan() => one,
+            MapOperation::Min | MapOperation::Max => other,
         };
         let places = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
         let values =

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from PIL import Image
 from scipy.interpolate import RectBivariateSpline, RegularGridInterpolator
+from scipy.ndimage import label
 
 from conftest import cases_folder
 
@@ -157,3 +159,100 @@ def test_real_ground_from_pictures_and_grids(kiln: Kiln, name: str) -> None:
     grey = kiln.bake(spec.format(kind="image", file="ground.png", size=list(size), range=[low, high]), name="grey")
     # The picture rounds to 65535 steps of the range.
     assert error(grey, field_of(heights, "bilinear"), heights.shape, size) <= 2.001 + (high - low) / 65535
+
+
+def masked_area(field: Field, shape: tuple[int, int], size: tuple[float, float], threshold: float) -> float:
+    """The area where a field is at least a threshold, by the crossings along many lines."""
+    rows, columns = shape
+    lines, steps = 1500, 64 * (columns - 1)
+    y = (np.arange(lines) + 0.5) / lines * (rows - 1)
+    x = np.linspace(0, columns - 1, steps + 1)
+    covered = 0.0
+    for at in y:
+        value = field(x, np.full_like(x, at)) - threshold
+        one, other = value[:-1], value[1:]
+        part = np.where(one == other, 1.0, one / np.where(one == other, 1.0, one - other))
+        inside = np.where(one >= 0, np.where(other >= 0, 1.0, part), np.where(other >= 0, 1.0 - part, 0.0))
+        covered += inside.sum() / steps
+    return covered / lines * size[0] * size[1]
+
+
+def sheet_area(baked: Baked) -> float:
+    """The area of an open sheet, seen from above."""
+    points, triangles = baked.mesh("a")
+    flat = points[triangles][:, :, [0, 2]]
+    edges = flat[:, 1:] - flat[:, :1]
+    twice = edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0]
+    assert (twice < 0).all()
+    return float(-twice.sum() / 2)
+
+
+@pytest.mark.parametrize("interpolation", ["bilinear", "bicubic"])
+@pytest.mark.parametrize("threshold", [-0.4, 0.0, 0.35])
+def test_masks_have_the_area_of_scipys_field(kiln: Kiln, interpolation: str, threshold: float) -> None:
+    heights, mask, size = hills(12, 15, seed=3), hills(19, 26, seed=6), (5.0, 3.6)
+    tolerance = 1e-3
+    spec = (
+        f"tolerance = {tolerance}\n[map.ground.grid]\nrows = {heights.tolist()}\n"
+        f'[map.m]\ninterpolation = "{interpolation}"\n[map.m.grid]\nrows = {mask.tolist()}\n'
+        f'[shape.a.height-map]\nmap = "ground"\nsize = {list(size)}\n'
+        'mask = [{{ map = "m", {side} = {threshold} }}]\n'
+    )
+    field = field_of(mask, interpolation)
+    exact = masked_area(field, mask.shape, size, threshold)
+    above = kiln.bake(spec.format(side="at-least", threshold=threshold))
+    below = kiln.bake(spec.format(side="at-most", threshold=threshold), name="below")
+    # A quarter of the tolerance along some forty meters of line, on both sides of it.
+    assert abs(sheet_area(above) - exact) < 2e-3
+    assert abs(sheet_area(above) + sheet_area(below) - size[0] * size[1]) < 1e-5
+    # The line itself, at the places where it ends an edge: within the tolerance of the exact one.
+    points, triangles = above.mesh("a")
+    edges, counts = np.unique(
+        np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1),
+        axis=0,
+        return_counts=True,
+    )
+    rim = edges[counts == 1]
+    x = (points[:, 0] / size[0] + 0.5) * (mask.shape[1] - 1)
+    y = (points[:, 2] / size[1] + 0.5) * (mask.shape[0] - 1)
+    border = (np.abs(x[rim] - [[0]]) < 1e-4).all(1) | (np.abs(x[rim] - 25) < 1e-4).all(1)
+    border |= (np.abs(y[rim]) < 1e-4).all(1) | (np.abs(y[rim] - 18) < 1e-4).all(1)
+    inner = rim[~border]
+    assert len(inner) > 20
+    for part in np.linspace(0, 1, 5):
+        px = np.clip(x[inner[:, 0]] * (1 - part) + x[inner[:, 1]] * part, 0, 25)
+        py = np.clip(y[inner[:, 0]] * (1 - part) + y[inner[:, 1]] * part, 0, 18)
+        # Somewhere within the tolerance around it the field takes the threshold.
+        around = [(dx, dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1)]
+        step = np.array([25 / size[0], 18 / size[1]]) * tolerance
+        near = np.stack(
+            [
+                field(np.clip(px + dx * step[0], 0, 25), np.clip(py + dy * step[1], 0, 18)) - threshold
+                for dx, dy in around
+            ]
+        )
+        assert ((near.min(0) <= 1e-9) & (near.max(0) >= -1e-9)).all()
+
+
+@pytest.mark.cases
+@pytest.mark.parametrize("name", ["maunga_whau_volcano", "jacksboro_fault"])
+def test_real_masks_have_their_components_and_volume(kiln: Kiln, name: str) -> None:
+    folder = cases_folder()
+    assert folder is not None
+    for kind, suffix in [("ground", "16"), ("mask", "mask50")]:
+        picture = folder / "height" / f"{name}_{suffix}.png"
+        (kiln.folder / f"{kind}.png").write_bytes(picture.read_bytes())
+    baked = kiln.bake(
+        'tolerance = 0.05\n[map.g.image]\nfile = "ground.png"\n[map.m.image]\nfile = "mask.png"\n'
+        '[shape.a.height-map]\nmap = "g"\nsize = [40, 30]\nrange = [0, 3]\nclose = "thickness"\ndepth = 0.5\n'
+        'mask = [{ map = "m", at-least = 0.5 }]\n'
+    )
+    mask = np.array(Image.open(kiln.folder / "mask.png"), float) / 255
+    facts = baked.shape("a")
+    assert facts["closed"]
+    assert facts["manifold"]
+    exact = masked_area(field_of(mask, "bilinear"), mask.shape, (40.0, 30.0), 0.5)
+    assert abs(facts["volume"] / 0.5 - exact) < 0.05 * 0.25 * 400
+    # At a half, cells with two white corners across are joined in their middle: white pixels touch over corners too.
+    _, count = label(mask > 0.5, np.ones((3, 3)))
+    assert facts["components"] == count

@@ -6,6 +6,7 @@
 //!
 //! Notation: a place is (x, y) in steps of the grid: x counts columns from 0, y counts rows from 0.
 
+mod gaps;
 mod scattered;
 mod slopes;
 
@@ -53,6 +54,8 @@ pub struct GridField {
     rows: usize,
     values: Vec<f64>,
     slopes: Option<Slopes>,
+    /// Samples whose value is not known and was made up; empty when all are known.
+    unknown: Vec<bool>,
 }
 
 /// Value and derivatives by x and y, for each step of the grid.
@@ -87,14 +90,93 @@ impl GridField {
             Interpolation::Bilinear => None,
             Interpolation::Bicubic => Some(Slopes::new(columns, &values)),
         };
-        Ok(Self { columns, rows, values, slopes })
+        Ok(Self { columns, rows, values, slopes, unknown: Vec::new() })
+    }
+
+    /// A field whose marked samples have no value. What stands in for them goes on from those around, layer by layer,
+    /// so that a spline does not swing; [`Self::knows`] tells the cells that depend on none.
+    ///
+    /// # Errors
+    /// See [`GridError`]; a field without any value has no value in its first sample.
+    ///
+    /// # Panics
+    /// When the number of samples is not a multiple of `columns`, or not that of the marks.
+    pub fn with_gaps(
+        columns: usize,
+        mut values: Vec<f64>,
+        unknown: Vec<bool>,
+        interpolation: Interpolation,
+    ) -> Result<Self, GridError> {
+        assert_eq!(values.len(), unknown.len(), "a mark for each sample");
+        if columns > 0 && unknown.contains(&true) {
+            gaps::fill(columns, &mut values, &unknown);
+        }
+        let mut field = Self::new(columns, values, interpolation)?;
+        if unknown.contains(&true) {
+            field.unknown = unknown;
+        }
+        Ok(field)
+    }
+
+    /// Whether a sample has a value of its own.
+    #[must_use]
+    pub fn is_known(&self, column: usize, row: usize) -> bool {
+        self.unknown.is_empty() || !self.unknown[row * self.columns + column]
+    }
+
+    /// Whether all samples around a cell have values.
+    #[must_use]
+    pub fn knows(&self, column: usize, row: usize) -> bool {
+        let corners = [(0, 0), (1, 0), (0, 1), (1, 1)];
+        self.unknown.is_empty() || corners.iter().all(|(i, j)| self.is_known(column + i, row + j))
+    }
+
+    /// Whether samples without a value are among them.
+    #[must_use]
+    pub fn has_gaps(&self) -> bool {
+        !self.unknown.is_empty()
     }
 
     /// The same field times a factor, then lifted.
     #[must_use]
     pub fn scaled(&self, factor: f64, lift: f64) -> Self {
         let values = self.values.iter().map(|value| lift + factor * value).collect();
-        Self { values, slopes: self.slopes.as_ref().map(|slopes| slopes.scaled(factor)), ..*self }
+        let slopes = self.slopes.as_ref().map(|slopes| slopes.scaled(factor));
+        Self { values, slopes, unknown: self.unknown.clone(), ..*self }
+    }
+
+    /// The field less another, which is stretched over the same rectangle and taken at the samples of the first. On equal
+    /// grids with equal interpolation that is their difference everywhere.
+    #[must_use]
+    pub fn minus(&self, other: &Self) -> Self {
+        let [right, bottom] = self.extent();
+        let [other_right, other_bottom] = other.extent();
+        let places = (0..self.rows).flat_map(|j| (0..self.columns).map(move |i| (i, j)));
+        let mut unknown = self.unknown.clone();
+        let mut values = Vec::with_capacity(self.values.len());
+        for (at, (i, j)) in places.enumerate() {
+            let (x, y) = (other_right * (i as f64 / right), other_bottom * (j as f64 / bottom));
+            values.push(self.values[at] - other.value(x, y));
+            if other.has_gaps() && !other.knows_at(x, y) {
+                unknown.resize(self.values.len(), false);
+                unknown[at] = true;
+            }
+        }
+        let slopes = self.slopes.as_ref().map(|_| Slopes::new(self.columns, &values));
+        Self { values, slopes, unknown, ..*self }
+    }
+
+    /// Whether what stands at a place depends on samples with values alone; a sample does not depend on others.
+    #[must_use]
+    pub fn knows_at(&self, x: f64, y: f64) -> bool {
+        let (i, s) = cell(x, self.columns);
+        let (j, t) = cell(y, self.rows);
+        let across = [(i, s < 1.0), (i + 1, s > 0.0)];
+        let along = [(j, t < 1.0), (j + 1, t > 0.0)];
+        let mut corners = along
+            .iter()
+            .flat_map(|(j, used_j)| across.iter().map(move |(i, used_i)| (i, j, *used_i && *used_j)));
+        corners.all(|(i, j, used)| !used || self.is_known(*i, *j))
     }
 
     /// Samples in a row.
@@ -171,6 +253,13 @@ impl GridField {
             None => (0.0, 0.0),
             Some(slopes) => slopes.bends(&self.values, (row * self.columns + column, self.columns)),
         }
+    }
+
+    /// The Bezier net of a cell of a spline, row by row; none for bilinear fields.
+    #[must_use]
+    pub fn net(&self, column: usize, row: usize) -> Option<[[f64; 4]; 4]> {
+        let slopes = self.slopes.as_ref()?;
+        Some(slopes.net(&self.values, (row * self.columns + column, self.columns)))
     }
 
     /// A least and a greatest value that hold everywhere. They are reached by bilinear fields.

@@ -33,7 +33,7 @@ pub use deform::{DeformError, Deformed, deform};
 pub use discretize::{Density, Station, arc_lengths, discretize};
 pub use extrude::{Extrusion, extrude};
 pub use geodesic::{Geodesic, geodesic};
-pub use height::{Closing, HeightBound, HeightMap, height_map};
+pub use height::{Closing, HeightBound, HeightMap, Mask, MaskSide, height_map};
 pub use patch::{Patchwork, Rim, patchwork};
 pub use plane::{FlatPlane, plane};
 pub use quadric::{ClippedQuadric, quadric};
@@ -160,6 +160,9 @@ pub enum TessellateError {
     /// Chords of lines that bound a curved face cross, however finely they are cut.
     #[error("the lines that bound it come too close to each other")]
     Tangled,
+    /// Masks of a height map that leave no area of it.
+    #[error("its masks leave nothing of it")]
+    NothingKept,
     /// The outline encloses no area.
     #[error("the outline encloses no area")]
     NoArea,

@@ -319,6 +319,8 @@ codes! {
     BelowBase = "K0907";
     /// scattered points make no map
     MapPoints = "K0908";
+    /// masks leave nothing of a height map
+    NothingKept = "K0909";
 
     /// this build of Kiln lacks a feature
     MissingFeature = "K0920";

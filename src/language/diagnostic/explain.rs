@@ -393,6 +393,8 @@ examples! {
         "[shape.a.height-map]\nmap = { points = { points = [[0, 0, 1], [1, 1, 2], [2, 2, 3]] } }\nsize = [1, 1]" => "[shape.a.height-map]\nmap = { points = { points = [[0, 0, 1], [1, 1, 2], [0, 2, 3]] } }\nsize = [1, 1]";
     MissingFeature: "Kiln was built without an optional part that the document needs. Cargo features turn such parts on: `csg` has the solid operations. The command line has all of them; a build script that leaves out the default features names those that it needs.",
         "" => "";
+    NothingKept: "The masks of a height map keep the places where all of them hold. Where a map nowhere passes its threshold, or only touches it at single samples, no area is left. The message tells how far the map reaches.",
+        "[shape.a.height-map]\nmap = { noise = {} }\nsize = [1, 1]\nmask = [{ map = { grid = { rows = [[0, 1], [1, 2]] } }, at-least = 3 }]" => "[shape.a.height-map]\nmap = { noise = {} }\nsize = [1, 1]\nmask = [{ map = { grid = { rows = [[0, 1], [1, 2]] } }, at-least = 1.5 }]";
     AssertionFailed: "What [assert] demands does not hold of the result. Nothing was written.",
         "[shape.a.box]\nsize = [1, 1, 1]\n[assert]\ntriangles = 10" => "[shape.a.box]\nsize = [1, 1, 1]\n[assert]\ntriangles = 12";
     UnknownFact: "Keys of [assert] are paths of the report: `triangles`, `shapes.NAME.area`, `totals.draw-calls`. With one shape its facts need no path.",

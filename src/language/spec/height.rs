@@ -1,14 +1,18 @@
 //! Shapes from height maps.
 
 use glam::DVec2;
+use serde_json::Value as Json;
 
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::check::Check;
 use crate::language::spec::construct::{choices, table};
-use crate::language::spec::reader::Reader;
+use crate::language::spec::reader::{Read, Reader};
 use crate::language::spec::reference::MapReference;
+use crate::language::spec::scalar::finite;
+use crate::language::spec::schema::{Schemas, any_of};
 use crate::language::spec::spanned::Sp;
+use crate::language::value::{Data, Value, show_number};
 
 table! {
     /// Ground by a map of heights, over a flat rectangle in the x, z plane about the origin: columns of the map go to +x,
@@ -31,8 +35,37 @@ table! {
         base: Option<Sp<f64>>;
         /// With `close = "thickness"`: how far the lower sheet lies below the upper one, measured upright.
         depth: Option<Sp<f64>> => Check::above(0.0);
+        /// What is kept of the ground: the places where all of these hold. It ends along the exact lines where the maps
+        /// pass their thresholds, in as many parts and with as many holes as that gives, and walls follow them when it is
+        /// closed. Masks that keep opposite sides of one threshold meet along the same points. Samples at the threshold
+        /// count on both sides.
+        mask: Vec<Mask> = Vec::new();
     }
     checked check
+}
+
+table! {
+    /// A condition on the places that are kept: a map within thresholds.
+    "mask" pub Mask {
+        /// What is held against the thresholds: the name of a map, or a map in place. It is stretched over the ground, and
+        /// its values are taken as they stand, whatever `range` says.
+        map: MapReference;
+        /// Kept is where the map has at least this value: a number, or another map, which is taken at the samples of the
+        /// first.
+        at_least: Option<Sp<Level>>;
+        /// Kept is where the map has at most this value: a number, or another map.
+        at_most: Option<Sp<Level>>;
+    }
+    checked check
+}
+
+/// A threshold.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Level {
+    /// The same everywhere.
+    Number(f64),
+    /// Another map.
+    Map(MapReference),
 }
 
 choices! {
@@ -56,6 +89,49 @@ choices! {
         Base = "base";
         /// By walls and a second sheet below.
         Thickness = "thickness";
+    }
+}
+
+impl Mask {
+    fn check(&self, span: Span, reader: &mut Reader<'_>) -> bool {
+        let report = match (&self.at_least, &self.at_most) {
+            (None, None) => {
+                Diagnostic::error(Code::MissingField, "missing field `at-least` or `at-most` of mask")
+                    .at(span, "no threshold")
+                    .help("write `at-least = 0.5`")
+            }
+            (Some(least), Some(most)) => match (&least.value, &most.value) {
+                (Level::Number(low), Level::Number(high)) if low > high => {
+                    let (low, high) = (show_number(*low), show_number(*high));
+                    let message =
+                        format!("`at-least` is {low} and `at-most` is {high}: nothing lies between them");
+                    Diagnostic::error(Code::OutOfRange, message)
+                        .at(most.span, "less than `at-least`")
+                        .help(format!("write `at-least = {high}` and `at-most = {low}`"))
+                }
+                _ => return true,
+            },
+            _ => return true,
+        };
+        reader.report(report);
+        false
+    }
+}
+
+impl Read for Level {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        match &value.data {
+            Data::String(_) | Data::Table(_) => MapReference::read(value, reader).map(Self::Map),
+            _ if value.number().is_some() => finite(value, reader).map(Self::Number),
+            _ => {
+                reader.mismatch(value, "a number, or a map");
+                None
+            }
+        }
+    }
+
+    fn schema(schemas: &mut Schemas) -> Json {
+        any_of(vec![f64::schema(schemas), MapReference::schema(schemas)])
     }
 }
 

@@ -1,7 +1,7 @@
 //! Maps: numbers over a rectangle, for heights and masks.
 
 use glam::{DVec2, DVec3};
-use serde_json::Value as Json;
+use serde_json::{Value as Json, json};
 
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
@@ -13,9 +13,10 @@ use crate::language::spec::import::FilePath;
 use crate::language::spec::kind::{Kinds, take_kind};
 use crate::language::spec::reader::{Fields, Read, Reader};
 use crate::language::spec::reference::MapReference;
+use crate::language::spec::scalar::finite;
 use crate::language::spec::schema::Schemas;
 use crate::language::spec::spanned::Sp;
-use crate::language::value::{Value, show_number};
+use crate::language::value::{Data, Value, show_number};
 
 /// A map: its kind and the fields that all kinds have.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +32,20 @@ table! {
     "map" pub MapOptions {
         /// What stands between the samples.
         interpolation: Sp<Between> = Between::Bilinear;
+        /// Which samples have no value: `"marked"` for those that the file itself marks and numbers that are not finite,
+        /// or a number for those that have it as well. There the map has holes, which run along the grid. Without it,
+        /// samples without a value are errors.
+        no_data: Option<Sp<NoData>>;
     }
+}
+
+/// Which samples of a map have no value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NoData {
+    /// Those that the file marks, and what is no finite number.
+    Marked,
+    /// Those of a number too.
+    Number(f64),
 }
 
 choices! {
@@ -208,6 +222,23 @@ choices! {
         Min = "min";
         /// The greatest.
         Max = "max";
+    }
+}
+
+impl Read for NoData {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        match &value.data {
+            Data::String(word) if word.as_str() == "marked" => Some(Self::Marked),
+            _ if value.number().is_some() => finite(value, reader).map(Self::Number),
+            _ => {
+                reader.mismatch(value, "\"marked\", or the number that stands for no value");
+                None
+            }
+        }
+    }
+
+    fn schema(_: &mut Schemas) -> Json {
+        json!({ "anyOf": [{ "const": "marked" }, { "type": ["number", "string"] }] })
     }
 }
 

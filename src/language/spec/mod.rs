@@ -76,7 +76,7 @@ pub use deform::{Along, Bend, CoordinateAxis, Taper, Twist};
 pub use document::{Asset, Definition, Spec, Unit};
 pub use formula::{Formula, FormulaCurve, FormulaForm};
 pub use grid::{Degrees, Directions, Rows};
-pub use height::{HeightBound, HeightClose, HeightMap};
+pub use height::{HeightBound, HeightClose, HeightMap, Level, Mask};
 pub use implicit::Implicit;
 pub use import::{FilePath, Import, Up};
 pub use joined::Joined;
@@ -85,7 +85,7 @@ pub use limit::Limits;
 pub use loft::{Across, Loft, LoftEnd, Matching, PlacedProfile, Profile};
 pub use map::{
     Between, Map, MapCombine, MapDefinition, MapFormula, MapGrid, MapImage, MapNoise, MapOperation,
-    MapOptions, MapPoints, MapRaw, RawNumber, Scatter,
+    MapOptions, MapPoints, MapRaw, NoData, RawNumber, Scatter,
 };
 pub use material::{Alpha, Color, Filter, Material, Texture, Wrap};
 pub use mesh::Mesh;

@@ -104,6 +104,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 6] = [
             "trimmed",
             "joined",
             "height map",
+            "mask",
             "parametric",
             "mesh",
             "import",

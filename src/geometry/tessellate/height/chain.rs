@@ -2,6 +2,7 @@
 //!
 //! Source of the splitting: U. Ramer, "An iterative procedure for the polygonal approximation of plane curves", 1972.
 
+use super::delaunay::Place;
 use super::lattice::refinement;
 use crate::geometry::map::{GridField, Interpolation};
 
@@ -29,8 +30,29 @@ pub(super) struct Chain {
 impl Side {
     pub(super) const ALL: [Self; 4] = [Self::Top, Self::Bottom, Self::Left, Self::Right];
 
-    fn is_row(self) -> bool {
+    pub(super) fn is_row(self) -> bool {
         matches!(self, Self::Top | Self::Bottom)
+    }
+
+    /// The side on which two places of a rectangle from 0 to `far` lie.
+    pub(super) fn of(a: Place, b: Place, far: Place) -> Self {
+        let both = |axis: usize, at: i32| a[axis] == at && b[axis] == at;
+        match () {
+            () if both(1, 0) => Self::Top,
+            () if both(1, far[1]) => Self::Bottom,
+            () if both(0, 0) => Self::Left,
+            () => Self::Right,
+        }
+    }
+
+    /// The place of a number of units along it.
+    pub(super) fn place(self, far: Place, along: i32) -> Place {
+        match self {
+            Self::Top => [along, 0],
+            Self::Bottom => [along, far[1]],
+            Self::Left => [0, along],
+            Self::Right => [far[0], along],
+        }
     }
 
     /// Steps along it.
@@ -82,6 +104,12 @@ impl Side {
     /// The chain of samples within a tolerance at the samples. Its bound holds everywhere.
     pub(super) fn sampled_chain(self, field: &GridField, tolerance: f64) -> Chain {
         self.split(field, 1, tolerance, self.most_bend(field) / 8.0)
+    }
+
+    /// The chain of all samples.
+    pub(super) fn whole_chain(self, field: &GridField) -> Chain {
+        let steps = (0..=self.length(field)).map(|step| step as f64).collect();
+        Chain { steps, bound: self.most_bend(field) / 8.0, refine: 1 }
     }
 
     fn split(self, field: &GridField, parts: u64, tolerance: f64, slack: f64) -> Chain {

@@ -14,12 +14,13 @@ const WALL: u32 = 1;
 /// The lower sheet.
 const UNDER: u32 = 2;
 
-/// Closes a sheet along its rims, loops of its vertices (which are its points too) with the sheet to their left over
-/// columns and rows. Where the sheet lies on its base, it shares the points of the base.
+/// Closes a sheet along the rims of its connected parts, loops of its vertices (which are its points too) with the sheet
+/// to their left over columns and rows, the outer one of each part first. Where the sheet lies on its base, it shares the
+/// points of the base.
 pub(super) fn close(
     shape: &HeightMap,
     mut sheet: Mesh,
-    rims: &[Vec<u32>],
+    parts: &[Vec<Vec<u32>>],
     detail: &Detail,
 ) -> Result<Mesh, TessellateError> {
     match shape.close {
@@ -27,7 +28,7 @@ pub(super) fn close(
         Closing::Thickness(thickness) => {
             detail.allow(2 * sheet.triangles.len() as u64)?;
             let below = add_under(&mut sheet, thickness);
-            for rim in rims {
+            for rim in parts.iter().flatten() {
                 let under: Vec<PointIndex> = rim.iter().map(|at| PointIndex(below + at)).collect();
                 add_walls(&mut sheet, rim, &under, detail);
             }
@@ -40,15 +41,17 @@ pub(super) fn close(
                     place: DVec2::new(low.x, low.z),
                 });
             }
-            let mut loops = Vec::new();
-            for rim in rims {
-                let under = add_feet(&mut sheet, rim, base);
-                add_walls(&mut sheet, rim, &under, detail);
-                let place = rim.iter().map(|at| flat(sheet.points[*at as usize])).collect();
-                loops.push(CapLoop { place, points: under });
-            }
             let facing = Facing { normal: DVec3::NEG_Y, mirrored: false };
-            add_cap(&mut sheet, &loops, facing, WALL, detail.uv)?;
+            for rims in parts {
+                let mut loops = Vec::new();
+                for rim in rims {
+                    let under = add_feet(&mut sheet, rim, base);
+                    add_walls(&mut sheet, rim, &under, detail);
+                    let place = rim.iter().map(|at| flat(sheet.points[*at as usize])).collect();
+                    loops.push(CapLoop { place, points: under });
+                }
+                add_cap(&mut sheet, &loops, facing, WALL, detail.uv)?;
+            }
         }
     }
     Ok(sheet)

@@ -20,9 +20,16 @@ pub(super) type Place = [i32; 2];
 pub(super) struct Delaunay {
     pub(super) places: Vec<Place>,
     pub(super) corners: Vec<u32>,
-    opposite: Vec<u32>,
+    pub(super) opposite: Vec<u32>,
     /// Half-edges that may be wrong.
     suspects: Vec<u32>,
+    /// For each half-edge the lines that run along it, one bit each; where there are any it is never turned. Empty
+    /// until lines are drawn.
+    pub(super) lines: Vec<u32>,
+    /// For each corner a half-edge that begins there; empty until lines are drawn.
+    pub(super) out_of: Vec<u32>,
+    /// For each triangle whether corners may be set in it; empty where they may in all.
+    pub(super) kept: Vec<bool>,
     /// Triangles that the last insertion made or changed, each once.
     pub(super) changed: Vec<u32>,
 }
@@ -31,7 +38,9 @@ pub(super) struct Delaunay {
 enum Found {
     Inside(u32),
     On(u32),
-    Corner,
+    /// On the corner at which this half-edge begins.
+    Corner(u32),
+    Outside,
 }
 
 /// Twice the area of a triangle, positive when it turns counter-clockwise.
@@ -43,7 +52,7 @@ pub(super) fn turn(a: Place, b: Place, c: Place) -> i64 {
 
 /// Whether d lies inside the circle through the corners of a counter-clockwise triangle.
 #[expect(clippy::cast_precision_loss, reason = "the rounded result is used where it is beyond doubt")]
-fn in_circle(a: Place, b: Place, c: Place, d: Place) -> bool {
+pub(super) fn in_circle(a: Place, b: Place, c: Place, d: Place) -> bool {
     let from = |p: Place| [0, 1].map(|k| i64::from(p[k]) - i64::from(d[k]));
     let [a, b, c] = [from(a), from(b), from(c)];
     let cross = |p: [i64; 2], q: [i64; 2]| p[0] * q[1] - p[1] * q[0];
@@ -76,6 +85,9 @@ impl Delaunay {
             corners: vec![0, 1, 2, 0, 2, 3],
             opposite: vec![BORDER, BORDER, 3, 2, BORDER, BORDER],
             suspects: Vec::new(),
+            lines: Vec::new(),
+            out_of: Vec::new(),
+            kept: Vec::new(),
             changed: Vec::new(),
         }
     }
@@ -93,34 +105,70 @@ impl Delaunay {
         self.opposite[edge as usize]
     }
 
-    fn place(&self, edge: u32) -> Place {
+    pub(super) fn place(&self, edge: u32) -> Place {
         self.places[self.corners[edge as usize] as usize]
     }
 
-    /// Adds a place inside the rectangle or on its border, looked for from a triangle near by. None when a corner
-    /// stands there already; else its number, and [`Self::changed`] lists the triangles around it.
-    pub(super) fn insert(&mut self, place: Place, near: u32) -> Option<u32> {
-        let found = self.locate(place, near);
-        if matches!(found, Found::Corner) {
-            return None;
-        }
-        let corner = crate::geometry::mesh::index(self.places.len());
-        self.places.push(place);
-        self.changed.clear();
-        match found {
-            Found::Inside(triangle) => self.split_triangle(triangle, corner),
-            Found::On(edge) => self.split_edge(edge, corner),
-            Found::Corner => return None,
-        }
-        self.settle();
-        Some(corner)
+    /// The lines along a half-edge.
+    pub(super) fn line(&self, edge: u32) -> u32 {
+        self.lines.get(edge as usize).copied().unwrap_or(0)
     }
 
-    /// A walk straight towards the place; ends since the triangulation is Delaunay (L. Guibas and J. Stolfi, 1985).
+    /// Whether corners may be set in a triangle.
+    pub(super) fn keeps(&self, triangle: u32) -> bool {
+        self.kept.get(triangle as usize).copied().unwrap_or(true)
+    }
+
+    /// Adds a place inside the rectangle or on its border, looked for from a triangle near by. None when a corner
+    /// stands there already, or where none may stand: on a line, or in a triangle that is not kept. Else its number, and
+    /// [`Self::changed`] lists the triangles around it.
+    pub(super) fn insert(&mut self, place: Place, near: u32) -> Option<u32> {
+        match self.locate(place, near) {
+            Found::Inside(triangle) if self.keeps(triangle) => {
+                Some(self.split(place, |mesh, corner| mesh.split_triangle(triangle, corner)))
+            }
+            Found::On(edge) if self.keeps(edge / 3) && self.line(edge) == 0 => {
+                Some(self.split(place, |mesh, corner| mesh.split_edge(edge, corner)))
+            }
+            _ => None,
+        }
+    }
+
+    /// The corner at a place, added where there is none yet, on lines too. None outside of the rectangle.
+    pub(super) fn corner_at(&mut self, place: Place, near: u32) -> Option<u32> {
+        match self.locate(place, near) {
+            Found::Inside(triangle) => {
+                Some(self.split(place, |mesh, corner| mesh.split_triangle(triangle, corner)))
+            }
+            Found::On(edge) => Some(self.split(place, |mesh, corner| mesh.split_edge(edge, corner))),
+            Found::Corner(edge) => Some(self.corners[edge as usize]),
+            Found::Outside => None,
+        }
+    }
+
+    fn split(&mut self, place: Place, at: impl FnOnce(&mut Self, u32)) -> u32 {
+        let corner = crate::geometry::mesh::index(self.places.len());
+        self.places.push(place);
+        if !self.out_of.is_empty() {
+            self.out_of.push(BORDER);
+        }
+        self.changed.clear();
+        at(self, corner);
+        self.settle();
+        corner
+    }
+
+    /// A walk straight towards the place; ends since the triangulation is Delaunay (L. Guibas and J. Stolfi, 1985). Lines
+    /// may lead it in circles: then all triangles are looked at.
     fn locate(&self, place: Place, near: u32) -> Found {
         let mut edge = 3 * near;
         let mut came_from = BORDER;
+        let mut steps = self.triangles();
         loop {
+            if steps == 0 {
+                return self.search(place);
+            }
+            steps -= 1;
             let mut on = BORDER;
             let mut out = BORDER;
             let mut corners = 0;
@@ -141,23 +189,37 @@ impl Delaunay {
                 }
             }
             if out == BORDER {
-                return match (corners, on) {
-                    (0, _) => Found::Inside(edge / 3),
-                    _ if self.is_corner(edge / 3, place) => Found::Corner,
-                    (_, on) => Found::On(on),
-                };
+                return self.found(edge / 3, if corners == 0 { BORDER } else { on }, place);
             }
             came_from = self.opposite[out as usize];
             if came_from == BORDER {
-                // Outside of the rectangle: nothing stands there and nothing can.
-                return Found::Corner;
+                return Found::Outside;
             }
             edge = came_from;
         }
     }
 
-    fn is_corner(&self, triangle: u32, place: Place) -> bool {
-        self.corners_of(triangle).iter().any(|corner| self.places[*corner as usize] == place)
+    /// Looks at every triangle.
+    fn search(&self, place: Place) -> Found {
+        for triangle in 0..self.triangles() {
+            let sides = 3 * triangle..3 * triangle + 3;
+            let turns = sides.clone().map(|side| turn(self.place(side), self.place(next(side)), place));
+            if turns.clone().all(|turn| turn >= 0) {
+                let on = sides.zip(turns).find(|(_, turn)| *turn == 0).map_or(BORDER, |(side, _)| side);
+                return self.found(triangle, on, place);
+            }
+        }
+        Found::Outside
+    }
+
+    /// A place in a triangle, or on a side of it.
+    fn found(&self, triangle: u32, on: u32, place: Place) -> Found {
+        let corner = (3 * triangle..3 * triangle + 3).find(|side| self.place(*side) == place);
+        match (corner, on) {
+            (_, BORDER) => Found::Inside(triangle),
+            (Some(corner), _) => Found::Corner(corner),
+            (None, on) => Found::On(on),
+        }
     }
 
     /// One triangle into three.
@@ -173,9 +235,13 @@ impl Delaunay {
         let [a, b, c] = self.corners_of(triangle);
         let first = 3 * triangle;
         let [ab, bc, ca] = [0, 1, 2].map(|k| self.opposite[(first + k) as usize]);
-        let second = self.add([b, c, p]);
-        let third = self.add([c, a, p]);
+        let [line_ab, line_bc, line_ca] = [0, 1, 2].map(|k| self.line(first + k));
+        let second = self.add([b, c, p], triangle);
+        let third = self.add([c, a, p], triangle);
         self.set(first, [a, b, p]);
+        self.draw_along(first, [line_ab, 0, 0]);
+        self.draw_along(second, [line_bc, 0, 0]);
+        self.draw_along(third, [line_ca, 0, 0]);
         self.join(first, ab);
         self.join(first + 1, second + 2);
         self.join(first + 2, third + 1);
@@ -201,10 +267,13 @@ impl Delaunay {
         let beyond = self.opposite[e as usize];
         let bc = self.opposite[f as usize];
         let ca = self.opposite[g as usize];
+        let [line, line_bc, line_ca] = [e, f, g].map(|edge| self.line(edge));
         let triangle = 3 * (edge / 3);
         self.set(triangle, [a, p, c]);
         self.join(triangle + 2, ca);
-        let other = self.add([p, b, c]);
+        let other = self.add([p, b, c], edge / 3);
+        self.draw_along(triangle, [line, 0, line_ca]);
+        self.draw_along(other, [line, line_bc, 0]);
         self.join(other + 1, bc);
         self.join(triangle + 1, other + 2);
         self.suspects.extend([triangle + 2, other + 1]);
@@ -215,11 +284,14 @@ impl Delaunay {
             return;
         }
         let [ad, db] = [next(beyond), previous(beyond)].map(|edge| self.opposite[edge as usize]);
+        let [line_ad, line_db] = [next(beyond), previous(beyond)].map(|edge| self.line(edge));
         let d = self.corners[previous(beyond) as usize];
         let below = 3 * (beyond / 3);
         self.set(below, [b, p, d]);
         self.join(below + 2, db);
-        let left = self.add([p, a, d]);
+        let left = self.add([p, a, d], beyond / 3);
+        self.draw_along(below, [line, 0, line_db]);
+        self.draw_along(left, [line, line_ad, 0]);
         self.join(left + 1, ad);
         self.join(below + 1, left + 2);
         self.join(below, other);
@@ -228,18 +300,42 @@ impl Delaunay {
         self.changed.extend([below / 3, left / 3]);
     }
 
-    fn add(&mut self, corners: [u32; 3]) -> u32 {
+    /// A triangle more, kept if another is.
+    fn add(&mut self, corners: [u32; 3], like: u32) -> u32 {
         let edge = crate::geometry::mesh::index(self.corners.len());
         self.corners.extend(corners);
         self.opposite.extend([BORDER; 3]);
+        if !self.lines.is_empty() {
+            self.lines.extend([0; 3]);
+        }
+        if !self.kept.is_empty() {
+            self.kept.push(self.kept[like as usize]);
+        }
+        self.note_corners(edge);
         edge
     }
 
     fn set(&mut self, edge: u32, corners: [u32; 3]) {
         self.corners[edge as usize..edge as usize + 3].copy_from_slice(&corners);
+        self.note_corners(edge);
     }
 
-    fn join(&mut self, edge: u32, other: u32) {
+    fn note_corners(&mut self, edge: u32) {
+        if !self.out_of.is_empty() {
+            for side in edge..edge + 3 {
+                self.out_of[self.corners[side as usize] as usize] = side;
+            }
+        }
+    }
+
+    /// The lines along the sides of a triangle.
+    fn draw_along(&mut self, edge: u32, lines: [u32; 3]) {
+        if !self.lines.is_empty() {
+            self.lines[edge as usize..edge as usize + 3].copy_from_slice(&lines);
+        }
+    }
+
+    pub(super) fn join(&mut self, edge: u32, other: u32) {
         self.opposite[edge as usize] = other;
         if other != BORDER {
             self.opposite[other as usize] = edge;
@@ -258,7 +354,7 @@ impl Delaunay {
     fn settle(&mut self) {
         while let Some(ab) = self.suspects.pop() {
             let ba = self.opposite[ab as usize];
-            if ba == BORDER {
+            if ba == BORDER || self.line(ab) != 0 {
                 continue;
             }
             let (bp, pa) = (next(ab), previous(ab));
@@ -267,20 +363,35 @@ impl Delaunay {
             if !in_circle(a, b, p, q) {
                 continue;
             }
-            let (p, q) = (self.corners[pa as usize], self.corners[qb as usize]);
-            let (outer_pa, outer_qb) = (self.opposite[pa as usize], self.opposite[qb as usize]);
-            // ab starts at q now: q, b, p; ba starts at p: p, a, q.
-            self.corners[ab as usize] = q;
-            self.corners[ba as usize] = p;
-            self.join(ab, outer_qb);
-            self.join(ba, outer_pa);
-            self.join(pa, qb);
+            self.flip(ab);
             self.suspects.extend([ab, aq]);
             let changed = ba / 3;
             if !self.changed.contains(&changed) {
                 self.changed.push(changed);
             }
         }
+    }
+
+    /// Turns an edge ab without lines that has a triangle on both sides: its half-edge is q to b afterwards.
+    pub(super) fn flip(&mut self, ab: u32) {
+        let ba = self.opposite[ab as usize];
+        let (pa, qb) = (previous(ab), previous(ba));
+        let (p, q) = (self.corners[pa as usize], self.corners[qb as usize]);
+        let (outer_pa, outer_qb) = (self.opposite[pa as usize], self.opposite[qb as usize]);
+        // ab starts at q now: q, b, p; ba starts at p: p, a, q.
+        self.corners[ab as usize] = q;
+        self.corners[ba as usize] = p;
+        self.join(ab, outer_qb);
+        self.join(ba, outer_pa);
+        self.join(pa, qb);
+        if !self.lines.is_empty() {
+            self.lines[ab as usize] = self.lines[qb as usize];
+            self.lines[ba as usize] = self.lines[pa as usize];
+            self.lines[pa as usize] = 0;
+            self.lines[qb as usize] = 0;
+        }
+        self.note_corners(3 * (ab / 3));
+        self.note_corners(3 * (ba / 3));
     }
 }
 

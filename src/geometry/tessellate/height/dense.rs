@@ -40,5 +40,5 @@ pub(super) fn dense(shape: &HeightMap, detail: &Detail) -> Result<Tessellation, 
         .chain((1..columns).rev().map(|i| last * columns + i))
         .chain((1..rows).rev().map(|j| j * columns));
     let rim: Vec<u32> = rim.map(index).collect();
-    close(shape, sheet, &[rim], detail).map(|mesh| tessellation(mesh, bound))
+    close(shape, sheet, &[vec![rim]], detail).map(|mesh| tessellation(mesh, bound))
 }

@@ -14,16 +14,55 @@ use rayon::prelude::{
 use super::chain::{Chain, Side};
 use super::delaunay::{BORDER, Delaunay, Place, next};
 use super::lattice::Lattice;
+use super::region::{Region, rim_edges};
 use super::scan::{Corner, Worst, edge, nodes};
 
 /// What is asked of the triangles.
-pub(super) struct Goal {
+pub(super) struct Goal<'r> {
     /// Greatest error, the lattice's slack already taken off.
     pub(super) tolerance: f64,
     /// Whether it holds between the nodes too.
     pub(super) everywhere: bool,
     /// Most triangles.
     pub(super) limit: u64,
+    /// What is kept; everything without it.
+    pub(super) region: Option<&'r Region>,
+    /// A base, how far below it heights are raised to it, and how near to it corners on lines are set on it.
+    pub(super) floor: Option<Floor>,
+}
+
+/// A base on which a region may end.
+#[derive(Clone, Copy)]
+pub(super) struct Floor {
+    pub(super) base: f64,
+    pub(super) below: f64,
+    pub(super) near: f64,
+}
+
+/// Why there are no triangles.
+pub(super) enum RefineError {
+    /// So many are too many.
+    TooMany(u64),
+    /// Lines of the region could not be drawn.
+    Tangled,
+    /// Nothing is kept.
+    Empty,
+}
+
+impl Floor {
+    fn raised(floor: Option<Self>, height: f64) -> f64 {
+        match floor {
+            Some(floor) if height < floor.base && height >= floor.base - floor.below => floor.base,
+            _ => height,
+        }
+    }
+
+    fn on_line(floor: Option<Self>, height: f64) -> f64 {
+        match floor {
+            Some(floor) if (height - floor.base).abs() <= floor.near => floor.base,
+            _ => Self::raised(floor, height),
+        }
+    }
 }
 
 /// Triangles over a field.
@@ -65,21 +104,27 @@ impl Ord for Need {
 
 struct Greedy<'l> {
     lattice: &'l Lattice<'l>,
-    goal: &'l Goal,
+    goal: &'l Goal<'l>,
     made: Triangles,
     versions: Vec<u32>,
     errors: Vec<f64>,
     needs: BinaryHeap<Need>,
 }
 
-/// Refines until the goal is met; where that would take more triangles than the limit, their number.
-pub(super) fn refine(lattice: &Lattice<'_>, chains: &[Chain; 4], goal: &Goal) -> Result<Triangles, u64> {
-    let mesh = Delaunay::new(lattice.far());
-    let heights = mesh.places.iter().map(|place| lattice.height(*place)).collect();
-    let made = Triangles { mesh, heights, error: 0.0 };
-    let mut greedy =
-        Greedy { lattice, goal, made, versions: Vec::new(), errors: Vec::new(), needs: BinaryHeap::new() };
-    greedy.draw_borders(chains);
+/// Refines until the goal is met.
+pub(super) fn refine(
+    lattice: &Lattice<'_>,
+    chains: &[Chain; 4],
+    goal: &Goal<'_>,
+) -> Result<Triangles, RefineError> {
+    let mut greedy = Greedy {
+        lattice,
+        goal,
+        made: begun(lattice, chains, goal)?,
+        versions: Vec::new(),
+        errors: Vec::new(),
+        needs: BinaryHeap::new(),
+    };
     let all: Vec<u32> = (0..greedy.made.mesh.triangles()).collect();
     let found: Vec<Worst> = all.par_iter().with_min_len(16).map(|triangle| greedy.judge(*triangle)).collect();
     greedy.versions.resize(all.len(), 0);
@@ -87,27 +132,51 @@ pub(super) fn refine(lattice: &Lattice<'_>, chains: &[Chain; 4], goal: &Goal) ->
     for (triangle, worst) in all.into_iter().zip(found) {
         greedy.note(triangle, worst);
     }
-    greedy.run()?;
+    greedy.run().map_err(RefineError::TooMany)?;
     let mut made = greedy.made;
     made.error = greedy.errors.into_iter().fold(0.0, f64::max);
     Ok(made)
 }
 
-impl Greedy<'_> {
-    fn draw_borders(&mut self, chains: &[Chain; 4]) {
-        let scale = f64::from(self.lattice.units) * f64::from(self.lattice.refine);
-        for (side, chain) in Side::ALL.into_iter().zip(chains) {
-            let mut near = 0;
-            for along in &chain.steps {
-                let place = side.at(self.lattice.field, *along).map(|step| whole(step * scale));
-                if self.made.mesh.insert(place, near).is_some() {
-                    self.made.heights.push(self.lattice.height(place));
-                    near = self.made.mesh.changed[0];
-                }
+/// Triangles between the borders and lines alone.
+pub(super) fn begun(
+    lattice: &Lattice<'_>,
+    chains: &[Chain; 4],
+    goal: &Goal<'_>,
+) -> Result<Triangles, RefineError> {
+    let mut mesh = Delaunay::new(lattice.far());
+    draw_borders(&mut mesh, lattice, chains);
+    let mut on_line = vec![false; mesh.places.len()];
+    if let Some(region) = goal.region {
+        let any = region.draw(&mut mesh, lattice).map_err(|_| RefineError::Tangled)?;
+        if !any {
+            return Err(RefineError::Empty);
+        }
+        on_line.resize(mesh.places.len(), false);
+        rim_edges(&mesh).flatten().for_each(|corner| on_line[corner as usize] = true);
+    }
+    let height = |(place, on_line): (&Place, &bool)| {
+        let height = lattice.height(*place);
+        if *on_line { Floor::on_line(goal.floor, height) } else { Floor::raised(goal.floor, height) }
+    };
+    let heights = mesh.places.iter().zip(&on_line).map(height).collect();
+    Ok(Triangles { mesh, heights, error: 0.0 })
+}
+
+fn draw_borders(mesh: &mut Delaunay, lattice: &Lattice<'_>, chains: &[Chain; 4]) {
+    let scale = f64::from(lattice.units) * f64::from(lattice.refine);
+    for (side, chain) in Side::ALL.into_iter().zip(chains) {
+        let mut near = 0;
+        for along in &chain.steps {
+            let place = side.at(lattice.field, *along).map(|step| whole(step * scale));
+            if mesh.insert(place, near).is_some() {
+                near = mesh.changed[0];
             }
         }
     }
+}
 
+impl Greedy<'_> {
     fn run(&mut self) -> Result<(), u64> {
         while let Some(need) = self.needs.pop() {
             let at = need.triangle as usize;
@@ -153,7 +222,7 @@ impl Greedy<'_> {
         let center = inside(self.center(need.triangle).map(whole));
         for place in near.into_iter().chain([center]) {
             if self.made.mesh.insert(place, need.triangle).is_some() {
-                self.made.heights.push(self.lattice.height(place));
+                self.made.heights.push(Floor::raised(self.goal.floor, self.lattice.height(place)));
                 return true;
             }
         }
@@ -185,6 +254,9 @@ impl Greedy<'_> {
 
     /// The greatest error of a triangle: at the nodes first, since a node is the better corner.
     fn judge(&self, triangle: u32) -> Worst {
+        if !self.made.mesh.keeps(triangle) {
+            return Worst::NONE;
+        }
         let worst = nodes(self.lattice, self.corners(triangle));
         if !self.goal.everywhere || worst.error > self.goal.tolerance {
             return worst;
@@ -195,11 +267,34 @@ impl Greedy<'_> {
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "saturates; places are clamped into the lattice")]
-fn whole(number: f64) -> i32 {
+pub(super) fn whole(number: f64) -> i32 {
     number.round() as i32
 }
 
 impl Triangles {
+    /// Makes every node of the lattice a corner that lies in what is kept: coarse ones first, so that no triangle is
+    /// walked through often.
+    pub(super) fn insert_nodes(&mut self, lattice: &Lattice<'_>, goal: &Goal<'_>) {
+        let (columns, rows) = (lattice.columns, lattice.rows);
+        let mut step = columns.max(rows).next_power_of_two();
+        let mut near = 0;
+        while step > 0 {
+            for j in (0..rows).step_by(step) {
+                for i in (0..columns).step_by(step) {
+                    if i % (2 * step) == 0 && j % (2 * step) == 0 && step < columns.max(rows) {
+                        continue;
+                    }
+                    let place = [i, j].map(|node| whole(node as f64).saturating_mul(lattice.units));
+                    if self.mesh.insert(place, near).is_some() {
+                        self.heights.push(Floor::raised(goal.floor, lattice.height(place)));
+                        near = self.mesh.changed[0];
+                    }
+                }
+            }
+            step /= 2;
+        }
+    }
+
     pub(super) fn corners(&self, triangle: u32) -> [Corner; 3] {
         self.mesh.corners_of(triangle).map(|corner| {
             let at = corner as usize;
@@ -207,11 +302,11 @@ impl Triangles {
         })
     }
 
-    /// The greatest error along the edges of a triangle that have a triangle beyond.
+    /// The greatest error along the edges of a triangle that have a triangle beyond and bound nothing.
     fn along_edges(&self, lattice: &Lattice<'_>, triangle: u32) -> Worst {
         let mut worst = Worst::NONE;
         for side in 3 * triangle..3 * triangle + 3 {
-            if self.mesh.beyond(side) == BORDER {
+            if self.mesh.beyond(side) == BORDER || self.mesh.line(side) != 0 {
                 continue;
             }
             let [from, to] = [side, next(side)].map(|side| {
@@ -226,9 +321,19 @@ impl Triangles {
         worst
     }
 
+    /// The greatest error along the edges that bound what is kept.
+    pub(super) fn along_rims(&self, lattice: &Lattice<'_>) -> f64 {
+        let corner = |corner: u32| (self.mesh.places[corner as usize], self.heights[corner as usize]);
+        let errors = rim_edges(&self.mesh).map(|[from, to]| edge(lattice, corner(from), corner(to)).error);
+        errors.fold(0.0, f64::max)
+    }
+
     /// The greatest error everywhere but at the border, measured anew.
     pub(super) fn measure(&self, lattice: &Lattice<'_>) -> f64 {
         let of = |triangle: u32| {
+            if !self.mesh.keeps(triangle) {
+                return 0.0;
+            }
             let inside = nodes(lattice, self.corners(triangle)).error;
             inside.max(self.along_edges(lattice, triangle).error)
         };

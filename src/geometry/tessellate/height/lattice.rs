@@ -92,9 +92,9 @@ impl<'f> Lattice<'f> {
         Ok(lattice)
     }
 
-    /// The same with units so fine that places of borders are whole.
-    pub(super) fn holding(mut self, chains: &[Chain; 4]) -> Result<Self, u64> {
-        let finest = chains.iter().map(|chain| chain.refine).max().unwrap_or(1);
+    /// The same with units so fine that places of borders are whole, and those of so many parts of a step.
+    pub(super) fn holding(mut self, chains: &[Chain; 4], grain: u64) -> Result<Self, u64> {
+        let finest = chains.iter().map(|chain| chain.refine).fold(grain, u64::max);
         let wanted = finest / u64::from(self.refine).min(finest);
         let units = wanted.max(u64::from(self.units.unsigned_abs()));
         self.set_units(units)?;

@@ -7,11 +7,18 @@
 
 mod chain;
 mod close;
+mod contour;
 mod delaunay;
 mod dense;
+mod drawn;
 mod greedy;
 mod lattice;
+#[cfg(test)]
+mod masked;
+mod region;
 mod scan;
+mod scribe;
+mod sector;
 #[cfg(test)]
 mod tests;
 
@@ -25,9 +32,10 @@ use crate::geometry::mesh;
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
 use chain::Side;
 use close::close;
-use delaunay::{BORDER, next};
-use greedy::{Goal, Triangles, refine};
+use delaunay::BORDER;
+use greedy::{Floor, Goal, RefineError, Triangles, begun, refine};
 use lattice::Lattice;
+use region::{Region, RegionError, grain, rims};
 
 /// A field of heights over a rectangle in the x, z plane about the origin: columns go to +x, rows to +z.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +48,28 @@ pub struct HeightMap {
     pub bound: HeightBound,
     /// How it is closed.
     pub close: Closing,
+    /// What is kept of it: the places where all of these hold. Maps are stretched over the rectangle.
+    pub masks: Vec<Mask>,
+}
+
+/// A part of a map's rectangle, bounded by an iso-line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mask {
+    /// What is held against the threshold.
+    pub field: Arc<GridField>,
+    /// The value on the line.
+    pub threshold: f64,
+    /// Which side is kept.
+    pub side: MaskSide,
+}
+
+/// Which side of a threshold is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MaskSide {
+    /// Where the field is at least as high.
+    AtLeast,
+    /// Where the field is at most as high.
+    AtMost,
 }
 
 /// Where the tolerance of a height map holds.
@@ -112,6 +142,7 @@ pub fn height_map(
         return dense::dense(shape, detail);
     };
     match shape.bound {
+        HeightBound::Dense if Region::is_needed(shape) => dense_region(shape, detail, aim, tolerance),
         HeightBound::Dense => dense::dense(shape, detail),
         HeightBound::Samples | HeightBound::Surface => adaptive(shape, detail, aim, tolerance),
     }
@@ -137,14 +168,16 @@ fn adaptive(
     /// Finer lattices that are tried where corners find no place.
     const ATTEMPTS: i32 = 4;
     let field = &*shape.field;
-    let too_many = |needed| TessellateError::TooMany { needed, limit: detail.triangle_limit };
+    let limit = detail.triangle_limit;
+    let too_many = |needed| TessellateError::TooMany { needed, limit };
     let everywhere = shape.bound == HeightBound::Surface;
     let border = border_tolerance(field, aim, tolerance);
+    let grain = if Region::is_needed(shape) { grain(shape, tolerance) } else { 1 };
+    let mut region = None;
     let mut attempt = 0;
     loop {
         let lattice = if everywhere {
-            Lattice::fine(field, aim, 1 << attempt, detail.triangle_limit.saturating_mul(8))
-                .map_err(too_many)?
+            Lattice::fine(field, aim, 1 << attempt, limit.saturating_mul(8)).map_err(too_many)?
         } else {
             Lattice::coarse(field)
         };
@@ -153,21 +186,94 @@ fn adaptive(
             if everywhere { side.chain(field, border) } else { side.sampled_chain(field, border) }
         });
         let along = chains.iter().map(|chain| chain.bound).fold(0.0, f64::max);
-        let lattice = lattice.holding(&chains).map_err(too_many)?;
+        let lattice = lattice.holding(&chains, grain).map_err(too_many)?;
+        if region.is_none() && Region::is_needed(shape) {
+            let traced = Region::trace(shape, &lattice, (tolerance, border), limit);
+            region = Some(traced.map_err(|error| of_region(error, limit))?);
+        }
         let slack = if everywhere { lattice.slack } else { 0.0 };
-        let goal = Goal { tolerance: aim - slack, everywhere, limit: detail.triangle_limit };
-        let made = refine(&lattice, &chains, &goal).map_err(too_many)?;
+        let goal = Goal {
+            tolerance: aim - slack,
+            everywhere,
+            limit,
+            region: region.as_ref(),
+            floor: floor(shape, tolerance),
+        };
+        let made = refine(&lattice, &chains, &goal).map_err(|error| of_refining(error, limit))?;
         if everywhere && made.error > goal.tolerance && attempt < ATTEMPTS {
             attempt += 1;
             continue;
         }
         let inside = if everywhere { made.error } else { made.measure(&lattice) };
-        // Points on the border are as far from the lattice's function as from the field, and its slack more.
-        let bound = (inside + lattice.slack).max(along + 2.0 * lattice.slack);
+        // Points on the border are as far from the lattice's function as from the field, and its slack more; where a
+        // line meets it, the two chords instead of one may be twice as far.
+        let bound = match &region {
+            None => (inside + lattice.slack).max(along + 2.0 * lattice.slack),
+            Some(region) => {
+                let lines = made.along_rims(&lattice) + lattice.slack;
+                (inside + lattice.slack).max(2.0 * along + 2.0 * lattice.slack).max(lines).max(region.error)
+            }
+        };
         return finish(shape, detail, &lattice, &made, bound);
     }
 }
 
+/// Every sample of what is kept, and the lines around it.
+fn dense_region(
+    shape: &HeightMap,
+    detail: &Detail,
+    aim: f64,
+    tolerance: f64,
+) -> Result<Tessellation, TessellateError> {
+    let field = &*shape.field;
+    let limit = detail.triangle_limit;
+    detail.allow(2 * (field.columns() as u64 - 1) * (field.rows() as u64 - 1))?;
+    let chains = Side::ALL.map(|side| side.whole_chain(field));
+    let lattice = Lattice::coarse(field).holding(&chains, grain(shape, tolerance));
+    let lattice = lattice.map_err(|needed| TessellateError::TooMany { needed, limit })?;
+    let rise = border_tolerance(field, aim, tolerance);
+    let region = Region::trace(shape, &lattice, (tolerance, rise), limit);
+    let region = region.map_err(|error| of_region(error, limit))?;
+    let goal = Goal {
+        tolerance: aim,
+        everywhere: false,
+        limit,
+        region: Some(&region),
+        floor: floor(shape, tolerance),
+    };
+    let mut made = begun(&lattice, &chains, &goal).map_err(|error| of_refining(error, limit))?;
+    made.insert_nodes(&lattice, &goal);
+    let along = chains.iter().map(|chain| chain.bound).fold(0.0, f64::max);
+    let bound = made.measure(&lattice).max(made.along_rims(&lattice)).max(2.0 * along) + lattice.slack;
+    finish(shape, detail, &lattice, &made, bound.max(region.error))
+}
+
+/// Heights next to a base at which masks may end.
+fn floor(shape: &HeightMap, tolerance: f64) -> Option<Floor> {
+    match shape.close {
+        Closing::Base(base) if Region::is_needed(shape) => {
+            Some(Floor { base, below: tolerance / 2.0, near: tolerance / 16.0 })
+        }
+        _ => None,
+    }
+}
+
+fn of_region(error: RegionError, limit: u64) -> TessellateError {
+    match error {
+        RegionError::TooMany(needed) => TessellateError::TooMany { needed, limit },
+        RegionError::Tangled => TessellateError::Tangled,
+    }
+}
+
+fn of_refining(error: RefineError, limit: u64) -> TessellateError {
+    match error {
+        RefineError::TooMany(needed) => TessellateError::TooMany { needed, limit },
+        RefineError::Tangled => TessellateError::Tangled,
+        RefineError::Empty => TessellateError::NothingKept,
+    }
+}
+
+/// The sheet of what is kept, closed.
 fn finish(
     shape: &HeightMap,
     detail: &Detail,
@@ -175,13 +281,24 @@ fn finish(
     made: &Triangles,
     bound: f64,
 ) -> Result<Tessellation, TessellateError> {
+    let mesh = &made.mesh;
     let mut sheet = Mesh::default();
-    for (place, height) in made.mesh.places.iter().zip(&made.heights) {
-        push(shape, &mut sheet, lattice.steps(*place), *height, detail.uv);
+    let mut numbers = vec![BORDER; mesh.places.len()];
+    let kept: Vec<u32> = (0..mesh.triangles()).filter(|triangle| mesh.keeps(*triangle)).collect();
+    for triangle in &kept {
+        for corner in mesh.corners_of(*triangle) {
+            numbers[corner as usize] = 0;
+        }
     }
-    let triangles = 0..made.mesh.triangles();
-    sheet.triangles = triangles.map(|triangle| up(made.mesh.corners_of(triangle))).collect();
-    close(shape, sheet, &rims(made), detail).map(|mesh| tessellation(mesh, bound))
+    for (corner, number) in numbers.iter_mut().enumerate().filter(|(_, number)| **number == 0) {
+        *number = mesh::index(sheet.points.len());
+        push(shape, &mut sheet, lattice.steps(mesh.places[corner]), made.heights[corner], detail.uv);
+    }
+    let number = |corner: u32| numbers[corner as usize];
+    sheet.triangles = kept.iter().map(|triangle| up(mesh.corners_of(*triangle).map(number))).collect();
+    let mut parts = rims(mesh);
+    parts.iter_mut().flatten().flatten().for_each(|corner| *corner = number(*corner));
+    close(shape, sheet, &parts, detail).map(|mesh| tessellation(mesh, bound))
 }
 
 /// A corner of the surface.
@@ -197,22 +314,6 @@ fn push(shape: &HeightMap, sheet: &mut Mesh, steps: [f64; 2], height: f64, uv: b
 /// Corners that turn counter-clockwise over columns and rows look down; this looks up.
 fn up([a, b, c]: [u32; 3]) -> [VertexIndex; 3] {
     [VertexIndex(a), VertexIndex(c), VertexIndex(b)]
-}
-
-/// The loops of corners around the triangles, with these to the left over columns and rows.
-fn rims(made: &Triangles) -> Vec<Vec<u32>> {
-    let mut after = vec![BORDER; made.mesh.places.len()];
-    let sides = mesh::index(made.mesh.corners.len());
-    for side in (0..sides).filter(|side| made.mesh.beyond(*side) == BORDER) {
-        after[made.mesh.corners[side as usize] as usize] = made.mesh.corners[next(side) as usize];
-    }
-    let mut ring = vec![0];
-    let mut at = after[0];
-    while at != 0 {
-        ring.push(at);
-        at = after[at as usize];
-    }
-    vec![ring]
 }
 
 fn tessellation(mut mesh: Mesh, bound: f64) -> Tessellation {

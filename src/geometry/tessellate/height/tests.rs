@@ -28,7 +28,7 @@ fn hills(columns: usize, rows: usize, kind: Interpolation) -> Arc<GridField> {
 }
 
 fn map(field: Arc<GridField>, bound: HeightBound, close: Closing) -> HeightMap {
-    HeightMap { field, size: DVec2::new(4.0, 3.0), bound, close }
+    HeightMap { field, size: DVec2::new(4.0, 3.0), bound, close, masks: Vec::new() }
 }
 
 fn make(shape: &HeightMap, tolerance: f64) -> Tessellation {
