@@ -160,6 +160,9 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
             Code::TangledLines,
             "cut it off where the lines that bound it lie further apart, or write a finer `tolerance`",
         ),
+        RealizeError::Tessellate(TessellateError::TooNarrow { .. }) => {
+            (Code::TooNarrow, "write a smaller `bevel` or `draft`")
+        }
         RealizeError::Tessellate(TessellateError::NoArea) => {
             (Code::NoArea, "a finer `tolerance` or more `segments` keep the outline open")
         }

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::Builder;
+use super::bevel::edge_profile;
 use super::moving::moving_extrusion;
 use super::profile::{Profile, meeting, place};
 use crate::geometry::curve::AnyCurve;
@@ -27,12 +28,18 @@ impl Builder<'_> {
             return Some(Recipe::Sweep(moving));
         }
         let height = extrude.height.value;
+        let bottom = if extrude.centered.value { -height / 2.0 } else { 0.0 };
+        let edge = edge_profile(extrude, bottom);
+        if let Some(edge) = &edge {
+            self.check_width(extrude, edge, (&outlines, &islands))?;
+        }
         Some(Recipe::Extrusion(Extrusion {
             outlines,
             islands,
-            bottom: if extrude.centered.value { -height / 2.0 } else { 0.0 },
+            bottom,
             height,
             caps: extrude.caps.value,
+            edge,
         }))
     }
 

@@ -4,6 +4,7 @@
 //! found in one run, each with its place; what is built satisfies the preconditions of the geometry kernels
 //! (profiles flat, closed where they must be, on their side of the axis, free of crossings).
 
+mod bevel;
 mod bezier_triangle;
 mod bspline;
 mod carry;

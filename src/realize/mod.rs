@@ -9,6 +9,7 @@ mod cloud;
 mod deformation;
 mod facets;
 mod height;
+mod leaning;
 mod limit;
 mod nearest;
 mod node;

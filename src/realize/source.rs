@@ -6,6 +6,7 @@ use glam::{DAffine3, DVec3};
 
 use super::bent::{Bent, Flat};
 use super::deformation::deformation;
+use super::leaning::Leaning;
 use super::nearest::Field;
 use super::reach::bent;
 use super::shape::frame_map;
@@ -57,6 +58,8 @@ enum Kind {
     Rounded(RoundedBox),
     Revolved(AnyCurve),
     Extruded(AnyCurve),
+    /// An outline, its sense of turning, and how its walls lean.
+    Leaning(Box<Leaning>),
     Swept(SweptWall),
     Patch(Box<Field>),
     /// Heights over a rectangle, moved along y.
@@ -207,7 +210,10 @@ fn kinds(recipe: &Recipe, bends: bool) -> Vec<Kind> {
             std::iter::once(wall).chain(Flat::of_turn(revolution).map(flat)).collect()
         }
         Recipe::Extrusion(extrusion) => {
-            let walls = extrusion.outlines.iter().map(|outline| Kind::Extruded(outline.clone()));
+            let walls = (0..extrusion.outlines.len()).map(|index| match Leaning::of(extrusion, index) {
+                Some(leaning) => Kind::Leaning(Box::new(leaning)),
+                None => Kind::Extruded(extrusion.outlines[index].clone()),
+            });
             let ends = [extrusion.bottom, extrusion.bottom + extrusion.height];
             walls.chain(ends.map(|z| flat(Flat::Plane(DVec3::Z * z, DVec3::Z)))).collect()
         }
@@ -276,7 +282,7 @@ pub(super) fn unwrapped(domain: Domain, closed: bool, corners: [f64; 3]) -> (f64
 /// Ranges of a curve's parameter around those of a triangle's corners, as wide again to both sides: a chord
 /// lies inside its arc, and the point nearest to it may belong to the next. Around a closed curve the corners
 /// may stand on both sides of the seam, and a range that leaves the domain comes back at the other end.
-fn ranges(curve: &impl Curve, corners: [f64; 3]) -> Vec<(f64, f64)> {
+pub(super) fn ranges(curve: &impl Curve, corners: [f64; 3]) -> Vec<(f64, f64)> {
     let domain = curve.domain();
     let period = domain.span();
     let closed = curve.is_closed();
@@ -369,6 +375,7 @@ impl Source {
                 let flat = DVec3::new(local.x, local.y, 0.0);
                 distance_near(outline, flat, window.u)
             }
+            Kind::Leaning(wall) => wall.distance(local, window),
             Kind::Swept(wall) => super::swept::distance(wall, local, window),
             Kind::Patch(surface) => surface.distance(local, window),
             Kind::Height(map, lift) => super::height::distance(map, local - DVec3::Y * *lift),

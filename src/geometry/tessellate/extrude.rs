@@ -5,6 +5,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::bevel::{EdgeProfile, bevel};
 use super::cap::{CapLoop, Facing, add_cap, twice_area};
 use super::discretize::{Density, Station, arc_lengths, discretize};
 use super::ring::{Row, RowKind, stitch};
@@ -26,12 +27,14 @@ pub struct Extrusion {
     pub height: f64,
     /// Whether the two flat ends are made.
     pub caps: bool,
+    /// How the walls lean, where they do; its heights are those of the extrusion.
+    pub edge: Option<EdgeProfile>,
 }
 
 /// One outline, cut and turned so that the outside is to its right.
 pub(super) struct Outline {
     pub(super) stations: Vec<Station>,
-    along: Vec<f64>,
+    pub(super) along: Vec<f64>,
 }
 
 /// Pushes outlines into triangles. Anchor sources: wall k is k, the lower end comes after the walls, then the
@@ -40,6 +43,9 @@ pub(super) struct Outline {
 /// # Errors
 /// When the limit would be passed, an outline encloses no area, or an end cannot be triangulated.
 pub fn extrude(shape: &Extrusion, detail: &Detail) -> Result<Tessellation, TessellateError> {
+    if let Some(profile) = &shape.edge {
+        return bevel(shape, profile, detail);
+    }
     let layers = match detail.density {
         SurfaceDensity::Grid { v, .. } => v.max(1),
         SurfaceDensity::Tolerance(_) => 1,
@@ -85,7 +91,7 @@ pub fn extrude(shape: &Extrusion, detail: &Detail) -> Result<Tessellation, Tesse
 }
 
 /// Where each island begins among the outlines.
-fn firsts(islands: &[usize]) -> Vec<usize> {
+pub(super) fn firsts(islands: &[usize]) -> Vec<usize> {
     let mut next = 0;
     let begin = |count: &usize| {
         next += count;
@@ -241,6 +247,7 @@ mod tests {
             bottom: 0.0,
             height: 1.0,
             caps: true,
+            edge: None,
         };
         let detail = Detail {
             density: SurfaceDensity::Tolerance(0.01),

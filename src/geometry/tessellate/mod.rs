@@ -6,6 +6,7 @@
 //! zero area unless the surface itself is degenerate there. The tolerance is spent here and nowhere else.
 //! Not promised: that the result does not cross itself where the surface does.
 
+mod bevel;
 mod cap;
 mod cuboid;
 mod deform;
@@ -28,6 +29,7 @@ mod tests;
 mod trimmed;
 mod wire;
 
+pub use bevel::{Collision, EdgeProfile};
 pub use cuboid::cuboid;
 pub use deform::{DeformError, Deformed, deform};
 pub use discretize::{Density, Station, arc_lengths, discretize};
@@ -163,6 +165,14 @@ pub enum TessellateError {
     /// Masks of a height map that leave no area of it.
     #[error("its masks leave nothing of it")]
     NothingKept,
+    /// Walls lean further in than the outline is wide.
+    #[error("near [{}, {}] the outline is too narrow for walls that reach {inset} inside", place.x, place.y)]
+    TooNarrow {
+        /// How far they reach in.
+        inset: f64,
+        /// Where.
+        place: DVec2,
+    },
     /// The outline encloses no area.
     #[error("the outline encloses no area")]
     NoArea,

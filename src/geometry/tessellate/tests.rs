@@ -174,7 +174,7 @@ fn extrusions_keep_the_laws() {
             for detail in details() {
                 let islands = vec![outlines.len()];
                 let shape =
-                    Extrusion { outlines: outlines.clone(), islands, bottom: -1.0, height: 2.0, caps };
+                    Extrusion { outlines: outlines.clone(), islands, bottom: -1.0, height: 2.0, caps, edge: None };
                 let made = extrude(&shape, &detail).unwrap();
                 check(name, &made, &detail, caps);
                 if caps {

@@ -239,6 +239,8 @@ codes! {
     NoRoom = "K0843";
     /// a curve has no such corner
     NoCorner = "K0844";
+    /// an outline is too narrow for walls that lean in so far
+    TooNarrow = "K0845";
 
     /// a file cannot be imported
     ImportFailed = "K0851";

@@ -290,6 +290,9 @@ examples! {
     NoCorner: "Corners are the places where the direction of a curve jumps. They are counted from 0 along the curve; one that is closed and starts in a corner has its first one there.",
         "[shape.a.extrude]\nprofile = { fillet = { of = { polyline = { points = [[0, 0], [4, 0], [4, 2]], closed = true } }, radius = 0.2, corners = [3] } }\nheight = 1" =>
         "[shape.a.extrude]\nprofile = { fillet = { of = { polyline = { points = [[0, 0], [4, 0], [4, 2]], closed = true } }, radius = 0.2, corners = [2] } }\nheight = 1";
+    TooNarrow: "A bevel or a draft moves the outline inward on the way up, and nothing of it may close up or run into another part before it is there. The message tells how far it may reach.",
+        "[shape.a.extrude]\nprofile = { polyline = { points = [[0, 0], [4, 0], [4, 2], [0, 2]], closed = true } }\nheight = 4\nbevel = 1.5" =>
+        "[shape.a.extrude]\nprofile = { polyline = { points = [[0, 0], [4, 0], [4, 2], [0, 2]], closed = true } }\nheight = 4\nbevel = 0.5";
     ImportFailed: "A file is damaged or cut off. The message names its line and value. Export it again.",
         "" => "";
     ImportNote: "Something in an imported file was passed over or put right; the notes say what and where.",

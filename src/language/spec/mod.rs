@@ -103,7 +103,7 @@ pub use primitive::{
     Base, BoxShape, Capsule, Cone, Cylinder, Disk, Geodesic, GeodesicClass, PlaneShape, Polyhedron, Pose,
     Solid, Sphere, Torus, Tube,
 };
-pub use profile::{Axis, Extrude, Fill, Revolve};
+pub use profile::{Axis, Bevel, BevelEnds, BevelForm, Extrude, Fill, Revolve};
 pub use quadric::{Quadric, Within};
 pub use reference::{
     CurveReference, Family, MapReference, MaterialName, NodeName, ShapeName, ShapeReference,

@@ -127,8 +127,87 @@ table! {
         /// How large the upper end is, about the z axis: `0.5` is half as large as the lower end, `[1, 0.5]` is narrower
         /// along y alone, 0 is a tip.
         taper: Option<Sp<Factor>> => Check::at_least(0.0);
+        /// What is cut off the edges of both ends: `0.002` is a straight cut so far inward and along z, a table says more.
+        /// The outline keeps its size between the ends; corners of the cut are as sharp as those of the outline, and run
+        /// round where the outline turns inward.
+        bevel: Option<Bevel>;
+        /// How much the walls lean inward on the way up, in degrees, as molds need it.
+        draft: Sp<f64> = 0.0 => Check::within(0.0, 89.0);
     }
     checked check
+}
+
+/// What is cut off the edges of an extrusion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bevel {
+    /// How far the ends stand inside the outline.
+    pub size: Sp<f64>,
+    /// How far the cut reaches along the walls.
+    pub height: Sp<f64>,
+    /// Its form.
+    pub form: BevelForm,
+    /// Where it is made.
+    pub ends: BevelEnds,
+}
+
+table! {
+    /// What is cut off the edges of an extrusion.
+    "bevel" pub(crate) BevelFields {
+        /// How far the flat ends stand inside the outline, in the document's unit.
+        size: Sp<f64> => Check::above(0.0);
+        /// How far the cut reaches along z; as far as `size` when it is not written.
+        height: Option<Sp<f64>> => Check::above(0.0);
+        /// Its form.
+        form: Sp<BevelForm> = BevelForm::Straight;
+        /// Which ends have it.
+        ends: Sp<BevelEnds> = BevelEnds::Both;
+    }
+}
+
+choices! {
+    /// The form of a bevel.
+    BevelForm {
+        /// A flat cut.
+        Straight = "straight";
+        /// A quarter of a circle, or of an ellipse, that bulges.
+        Round = "round";
+        /// A quarter that is hollow.
+        Cove = "cove";
+    }
+}
+
+choices! {
+    /// The ends of an extrusion that have a bevel.
+    BevelEnds {
+        /// Both ends.
+        Both = "both";
+        /// The upper end.
+        Top = "top";
+        /// The lower end.
+        Bottom = "bottom";
+    }
+}
+
+impl Read for Bevel {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        if matches!(value.data, Data::Table(_)) {
+            let fields = BevelFields::read(value, reader)?;
+            let (form, ends) = (fields.form.value, fields.ends.value);
+            let height = fields.height.unwrap_or(fields.size);
+            return Some(Self { size: fields.size, height, form, ends });
+        }
+        let size = Sp::<f64>::read(value, reader)?;
+        Check::above(0.0).apply(value, reader).then_some(Self {
+            size,
+            height: size,
+            form: BevelForm::Straight,
+            ends: BevelEnds::Both,
+        })
+    }
+
+    fn schema(schemas: &mut Schemas) -> Json {
+        any_of(vec![Sp::<f64>::schema(schemas), BevelFields::schema(schemas)])
+    }
 }
 
 choices! {
@@ -143,6 +222,47 @@ choices! {
 
 impl Extrude {
     fn check(&self, _: Span, reader: &mut Reader<'_>) -> bool {
-        self.taper.as_ref().is_none_or(|taper| keeps_width(taper, reader))
+        let width = self.taper.as_ref().is_none_or(|taper| keeps_width(taper, reader));
+        width && self.check_leaning(reader) && self.check_heights(reader)
+    }
+
+    /// Walls lean inward, or the section turns and narrows, but not both.
+    fn check_leaning(&self, reader: &mut Reader<'_>) -> bool {
+        let leaning = match &self.bevel {
+            Some(bevel) => Some(("bevel", bevel.size.span)),
+            None => (self.draft.value != 0.0).then_some(("draft", self.draft.span)),
+        };
+        let moving = match &self.taper {
+            Some(taper) => Some(("taper", taper.span)),
+            None => (self.twist.value != 0.0).then_some(("twist", self.twist.span)),
+        };
+        let (Some((one, here)), Some((other, there))) = (leaning, moving) else { return true };
+        let message = format!("`{one}` goes with straight extrusions, not with `{other}`");
+        let report = Diagnostic::error(Code::Conflict, message)
+            .at(here, "this needs a section that stays as it is")
+            .also(there, "this changes it")
+            .help(format!("leave `{other}` out and deform the shape: `{{ {other} = {{ of = \"NAME\", ... }} }}`"));
+        reader.report(report);
+        false
+    }
+
+    /// Bevels of both ends find room on the walls.
+    fn check_heights(&self, reader: &mut Reader<'_>) -> bool {
+        let Some(bevel) = &self.bevel else { return true };
+        let count = if bevel.ends == BevelEnds::Both { 2.0 } else { 1.0 };
+        if count * bevel.height.value <= self.height.value {
+            return true;
+        }
+        let most = self.height.value / count;
+        let message = format!(
+            "a bevel may be at most {} high here, found {}",
+            show_number(most),
+            show_number(bevel.height.value)
+        );
+        let report = Diagnostic::error(Code::OutOfRange, message)
+            .at(bevel.height.span, "too high")
+            .also(self.height.span, "the extrusion's height");
+        reader.report(report);
+        false
     }
 }
