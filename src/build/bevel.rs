@@ -64,17 +64,20 @@ impl Builder<'_> {
         edge: &EdgeProfile,
         (outlines, islands): (&[AnyCurve], &[usize]),
     ) -> Option<()> {
-        let (size, tolerance) = (extent(outlines), extent(outlines) / 4000.0);
+        let size = extent(outlines);
+        let tolerance = size / 4000.0;
         // What the tessellator refuses it refuses with its own words.
         let Ok(Some((collision, most))) = edge.fits(outlines, islands, tolerance) else { return Some(()) };
         let span = match &extrude.bevel {
             Some(bevel) => bevel.size.span,
             None => extrude.draft.span,
         };
+        // Told no more finely than it is known.
+        let grain = power_of_ten(tolerance);
         let message = format!(
             "the walls reach {} inside the outline, which is too narrow for that near {}",
             show(edge.deepest()),
-            place(collision.place)
+            place((collision.place / grain).round() * grain + 0.0)
         );
         let report = Diagnostic::error(Code::TooNarrow, message)
             .at(span, "too much for this outline")
@@ -86,6 +89,18 @@ impl Builder<'_> {
         });
         None
     }
+}
+
+/// The greatest power of ten that is no more than a number.
+fn power_of_ten(number: f64) -> f64 {
+    let mut power = 1.0;
+    while power > number {
+        power /= 10.0;
+    }
+    while power * 10.0 <= number {
+        power *= 10.0;
+    }
+    power
 }
 
 fn extent(outlines: &[AnyCurve]) -> f64 {

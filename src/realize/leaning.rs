@@ -40,11 +40,14 @@ impl Leaning {
         let (away, t) = self.nearest(flat, window);
         let spoke = flat - self.outline.point(t);
         // In a corner a place is inside if it is so of both sides or of either, as the corner turns.
-        let sides = [Side::Before, Side::After].map(|side| {
-            let along = self.outline.direction(t, side);
-            self.inside * along.truncate().perp_dot(spoke.truncate())
-        });
-        let inside = if sides[0] * sides[1] < 0.0 { self.inside_corner(t) } else { sides[0] + sides[1] > 0.0 };
+        let along = self.directions(t);
+        let sides = along.map(|along| self.inside * along.perp_dot(spoke.truncate()));
+        let inside = if sides[0] * sides[1] < 0.0 {
+            // Beside one side and behind the other: inside where the outline turns the other way.
+            self.inside * along[0].perp_dot(along[1]) < 0.0
+        } else {
+            sides[0] + sides[1] > 0.0
+        };
         self.edge.distance(DVec2::new(if inside { away } else { -away }, point.z))
     }
 
@@ -73,10 +76,14 @@ impl Leaning {
         best
     }
 
-    /// Whether what lies before a corner, beside one side and behind the other, is inside.
-    fn inside_corner(&self, t: f64) -> bool {
-        let [before, after] =
-            [Side::Before, Side::After].map(|side| self.outline.direction(t, side).truncate());
-        self.inside * before.perp_dot(after) < 0.0
+    /// Directions of the outline before and after a place; its ends are one place.
+    fn directions(&self, t: f64) -> [DVec2; 2] {
+        let domain = self.outline.domain();
+        let (before, after) = match t {
+            t if t <= domain.start || t >= domain.end => (domain.end, domain.start),
+            t => (t, t),
+        };
+        [self.outline.direction(before, Side::Before), self.outline.direction(after, Side::After)]
+            .map(|along| along.truncate())
     }
 }

@@ -173,8 +173,14 @@ fn extrusions_keep_the_laws() {
         for caps in [true, false] {
             for detail in details() {
                 let islands = vec![outlines.len()];
-                let shape =
-                    Extrusion { outlines: outlines.clone(), islands, bottom: -1.0, height: 2.0, caps, edge: None };
+                let shape = Extrusion {
+                    outlines: outlines.clone(),
+                    islands,
+                    bottom: -1.0,
+                    height: 2.0,
+                    caps,
+                    edge: None,
+                };
                 let made = extrude(&shape, &detail).unwrap();
                 check(name, &made, &detail, caps);
                 if caps {

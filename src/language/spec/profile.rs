@@ -241,7 +241,7 @@ impl Extrude {
         let report = Diagnostic::error(Code::Conflict, message)
             .at(here, "this needs a section that stays as it is")
             .also(there, "this changes it")
-            .help(format!("leave `{other}` out and deform the shape: `{{ {other} = {{ of = \"NAME\", ... }} }}`"));
+            .help(format!("leave `{other}` out here and write `[shape.NAME.{other}]` with `of` this shape"));
         reader.report(report);
         false
     }

@@ -476,9 +476,8 @@ fn bisector(before: DVec2, after: DVec2) -> Option<DVec2> {
 pub(super) fn whole(outlines: &[Vec<Corner>], depth: f64, round: Option<f64>) -> Result<(), Collision> {
     let mut front = Front::new(outlines, depth, round, 1.0);
     front.advance(depth)?;
-    let places: Vec<Vec<DVec2>> = (front.polygons().iter())
-        .map(|polygon| polygon.iter().map(|(_, place)| *place).collect())
-        .collect();
+    let places: Vec<Vec<DVec2>> =
+        (front.polygons().iter()).map(|polygon| polygon.iter().map(|(_, place)| *place).collect()).collect();
     for polygon in &places {
         if polygon.len() < 3 {
             return Err(Collision { depth, place: polygon.first().copied().unwrap_or(DVec2::ZERO) });

@@ -46,7 +46,9 @@ impl EdgeProfile {
     /// How far in the wall reaches at most, metres.
     #[must_use]
     pub fn deepest(&self) -> f64 {
-        self.curves().map(|curve| curve.evaluate(curve.domain().end, Side::Before).point.x).fold(0.0, f64::max)
+        self.curves()
+            .map(|curve| curve.evaluate(curve.domain().end, Side::Before).point.x)
+            .fold(0.0, f64::max)
     }
 
     /// Distance of a place, inside distance and height, from the profile.
@@ -58,7 +60,8 @@ impl EdgeProfile {
             let mut stops = vec![domain.start];
             stops.extend(curve.breaks());
             stops.push(domain.end);
-            let within = |pair: &[f64]| crate::geometry::curve::distance_within(curve, point, pair[0], pair[1]);
+            let within =
+                |pair: &[f64]| crate::geometry::curve::distance_within(curve, point, pair[0], pair[1]);
             stops.windows(2).map(within).fold(f64::INFINITY, f64::min)
         };
         self.curves().map(of).fold(f64::INFINITY, f64::min)
@@ -155,7 +158,8 @@ pub(super) fn bevel(
     mesh.runs = vec![Run { origin: 0, end: mesh::index(mesh.triangles.len()) }];
     let stations = outlines.iter().flat_map(|outline| &outline.stations);
     let chords = stations.map(|station| station.deviation).fold(0.0, f64::max);
-    let fans = if corners.iter().any(|corners| turns_out(corners)) { shares.fan(profile.deepest()) } else { 0.0 };
+    let fans =
+        if corners.iter().any(|corners| turns_out(corners)) { shares.fan(profile.deepest()) } else { 0.0 };
     let bound = chords + fans + rows.deviation;
     Ok(Tessellation { mesh, deviation: Deviation::new(bound, Evidence::Proved) })
 }
@@ -224,7 +228,11 @@ impl Rows {
 }
 
 /// Rows along a profile with lengths from its start; its length and how far its chords deviate.
-fn rows(curve: &AnyCurve, density: Density, detail: &Detail) -> Result<(Vec<Row>, (f64, f64)), TessellateError> {
+fn rows(
+    curve: &AnyCurve,
+    density: Density,
+    detail: &Detail,
+) -> Result<(Vec<Row>, (f64, f64)), TessellateError> {
     let stations = discretize(curve, density, detail.triangle_limit)?;
     let lengths = arc_lengths(curve, &stations);
     let deviation = stations.iter().map(|station| station.deviation).fold(0.0, f64::max);
@@ -307,7 +315,8 @@ impl Maker<'_> {
         for pair in rows.windows(2) {
             let (from, to) = (pair[0], pair[1]);
             let faces = if from.inset == to.inset { Ok(front.rise()) } else { front.advance(to.inset) };
-            let narrow = |collision: Collision| TessellateError::TooNarrow { inset: deepest, place: collision.place };
+            let narrow =
+                |collision: Collision| TessellateError::TooNarrow { inset: deepest, place: collision.place };
             let faces = faces.map_err(narrow)?;
             let level = Level { from, to, up };
             for (place, share) in front.points.iter().skip(points.len()) {
@@ -386,8 +395,7 @@ impl Maker<'_> {
         let part = (passed.place - stretch.ends[0]).dot(stretch.direction) / length.max(f64::MIN_POSITIVE);
         let part = part.clamp(0.0, 1.0);
         let along = mix([level.from.along, level.to.along], share);
-        let uv =
-            if self.detail.uv { DVec2::new(mix(stretch.along, part), 1.0 - along) } else { DVec2::ZERO };
+        let uv = if self.detail.uv { DVec2::new(mix(stretch.along, part), 1.0 - along) } else { DVec2::ZERO };
         let point = points[passed.point as usize];
         let anchor = Anchor { source: mesh::index(stretch.outline), u: mix(stretch.t, part), v: along };
         let bits = [normal.x, normal.y, normal.z, uv.x, uv.y].map(f64::to_bits);
@@ -451,7 +459,7 @@ fn bent(places: &[DVec2], points: &[u32]) -> Result<Vec<[u32; 3]>, TessellateErr
     let count = points.len();
     let kept: Vec<usize> = (0..count).filter(|k| points[*k] != points[(k + 1) % count]).collect();
     let ring: Vec<DVec2> = kept.iter().map(|k| places[*k]).collect();
-    let triangles = triangulate(&[&ring])
-        .map_err(|error| TessellateError::Cap { reason: error.to_string() })?;
+    let triangles =
+        triangulate(&[&ring]).map_err(|error| TessellateError::Cap { reason: error.to_string() })?;
     Ok(triangles.into_iter().map(|triangle| triangle.map(|k| mesh::index(kept[k as usize]))).collect())
 }
