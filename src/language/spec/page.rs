@@ -80,6 +80,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 6] = [
             "revolve",
             "axis",
             "extrude",
+            "bevel",
             "sweep",
             "profile station",
             "scale station",
