@@ -63,7 +63,10 @@ fn round_bevels_of_a_disk_have_the_volume_of_their_slices() {
 
 /// Closed outlines, with the number of their holes.
 const OUTLINES: [(&str, u64); 7] = [
-    ("profile = { polyline = { points = [[0, 0], [3, 0], [3, 1], [1, 1], [1, 3], [0, 3]], closed = true } }", 0),
+    (
+        "profile = { polyline = { points = [[0, 0], [3, 0], [3, 1], [1, 1], [1, 3], [0, 3]], closed = true } }",
+        0,
+    ),
     (
         "profile = { polyline = { points = { count = 14, each = \"= [(2 - 0.9 * (i % 2)) * cos(360 / 14 * i), (2 - 0.9 * (i % 2)) * sin(360 / 14 * i)]\" }, closed = true } }",
         0,
@@ -73,9 +76,18 @@ const OUTLINES: [(&str, u64); 7] = [
         "profile = { polyline = { points = [[0, 0], [3, 0], [3, 0.05], [2.98, 0.13], [2.93, 0.2], [2.8, 0.31], [1.2, 1.4], [0.1, 2], [0, 1.95]], closed = true } }",
         0,
     ),
-    ("profile = { circle = { radius = 1.8 } }\nholes = [{ circle = { radius = 0.5 } }, { circle = { center = [0.9, 0.6], radius = 0.1 } }]", 2),
-    ("profile = { path = { start = [0, 0], segments = [{ line = [[2, 0]] }, { arc = { through = [2.3, 1], to = [1.5, 1.6] } }, { arc = { through = [0.9, 1], to = [0.2, 1.2] } }, { line = [[0, 0]] }] } }", 0),
-    ("profile = { natural-spline = { points = [[0, 0], [2, -0.3], [3, 1], [1.5, 0.9], [0, 2]], closed = true } }", 0),
+    (
+        "profile = { circle = { radius = 1.8 } }\nholes = [{ circle = { radius = 0.5 } }, { circle = { center = [0.9, 0.6], radius = 0.1 } }]",
+        2,
+    ),
+    (
+        "profile = { path = { start = [0, 0], segments = [{ line = [[2, 0]] }, { arc = { through = [2.3, 1], to = [1.5, 1.6] } }, { arc = { through = [0.9, 1], to = [0.2, 1.2] } }, { line = [[0, 0]] }] } }",
+        0,
+    ),
+    (
+        "profile = { natural-spline = { points = [[0, 0], [2, -0.3], [3, 1], [1.5, 0.9], [0, 2]], closed = true } }",
+        0,
+    ),
     ("profile = { svg = { d = \"M0 0 H3 V3 H0 Z M0.8 0.8 V2.2 H2.2 V0.8 Z\" } }", 1),
 ];
 

@@ -56,12 +56,12 @@ impl<'a> Net<'a> {
         let (points, pieces, lattices) = (Vec::new(), Vec::new(), Vec::new());
         let mut net = Self { layout, points, pieces, fixed, lattices, deviation: Deviation::NONE, turns };
         let SurfaceDensity::Tolerance(tolerance) = detail.density else {
-            net.weave(&plans);
+            net.weave(&plans, detail)?;
             net.deviation = net.measure();
             return Ok(net);
         };
         for round in 0..ROUNDS {
-            net.weave(&plans);
+            net.weave(&plans, detail)?;
             detail.allow(net.triangles())?;
             let factors: Vec<f64> =
                 (0..plans.len()).map(|block| net.correction(block, &plans[block], tolerance)).collect();
@@ -79,9 +79,11 @@ impl<'a> Net<'a> {
     }
 
     /// Cuts all edges and fills all blocks.
-    fn weave(&mut self, plans: &[Plan]) {
+    fn weave(&mut self, plans: &[Plan], detail: &Detail) -> Result<(), TessellateError> {
         self.points = self.layout.nodes.clone();
-        let cuts: Vec<Cut> = (0..self.layout.edges.len()).map(|edge| self.cut(edge, plans)).collect();
+        let cuts: Result<Vec<Cut>, _> =
+            (0..self.layout.edges.len()).map(|edge| self.cut(edge, plans, detail)).collect();
+        let cuts = cuts?;
         self.pieces = Vec::with_capacity(plans.len());
         self.lattices.clear();
         for (block, plan) in self.layout.blocks.iter().zip(plans) {
@@ -106,13 +108,14 @@ impl<'a> Net<'a> {
             self.lattices.push(lattice);
             self.pieces.push(piece);
         }
+        Ok(())
     }
 
-    /// Cuts an edge as finely as any of its sides needs it.
-    fn cut(&mut self, number: usize, plans: &[Plan]) -> Cut {
+    /// Cuts an edge as finely as any of its sides needs it. Every piece of it will have a triangle.
+    fn cut(&mut self, number: usize, plans: &[Plan], detail: &Detail) -> Result<Cut, TessellateError> {
         let edge = &self.layout.edges[number];
         if edge.pole {
-            return Cut { fractions: vec![0.5], points: vec![edge.ends[0]] };
+            return Ok(Cut { fractions: vec![0.5], points: vec![edge.ends[0]] });
         }
         let feature = self.turns[number] > FEATURE;
         let mut density: Option<Density> = None;
@@ -129,7 +132,9 @@ impl<'a> Net<'a> {
         }
         // An edge that comes back to its start encloses something only with three points.
         let least = if edge.ends[0] == edge.ends[1] { 3 } else { 1 };
-        let fractions = density.unwrap_or_else(|| Density::even(1.0)).stations(least);
+        let density = density.unwrap_or_else(|| Density::even(1.0));
+        detail.allow(floor_large(density.total()))?;
+        let fractions = density.stations(least);
         let (owner, rim) = edge.uses[0];
         let block = &self.layout.blocks[owner];
         let mut points = vec![edge.ends[0]];
@@ -139,7 +144,7 @@ impl<'a> Net<'a> {
             self.points.push(block.jet(u, v).point);
         }
         points.push(edge.ends[1]);
-        Cut { fractions, points }
+        Ok(Cut { fractions, points })
     }
 
     /// The factor by which the densities of a block miss what its triangles need.
