@@ -36,7 +36,7 @@ impl Builder<'_> {
         Some(Recipe::Height(Heights { field, size: written.size.value, bound, close, masks }))
     }
 
-    fn masks(&mut self, written: &[spec::Mask]) -> Option<Vec<Mask>> {
+    pub(super) fn masks(&mut self, written: &[spec::Mask]) -> Option<Vec<Mask>> {
         /// Each mask has bits of its own in the lines of the mesh.
         const MOST: usize = 8;
         if let Some(first) = written.get(MOST) {

@@ -39,6 +39,7 @@ mod scaling;
 mod shape;
 mod solid;
 mod spline;
+mod split;
 mod svg;
 mod sweep;
 mod trimmed;

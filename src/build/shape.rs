@@ -52,7 +52,7 @@ impl Builder<'_> {
         Some(ShapeHandle(mesh::index(self.model.shapes.len()) - 1))
     }
 
-    fn options(&mut self, written: &spec::ShapeOptions) -> Option<ShapeOptions> {
+    pub(super) fn options(&mut self, written: &spec::ShapeOptions) -> Option<ShapeOptions> {
         let material = match &written.material {
             Some(name) => Some(self.material(&name.value.0)?),
             None => None,
@@ -119,6 +119,7 @@ impl Builder<'_> {
             Kind::Quadric(quadric) => self.quadric(quadric, span).map(here),
             Kind::Gordon(network) => self.gordon(network, span).map(here),
             Kind::HeightMap(map) => self.height_map(map, &definition.options).map(here),
+            Kind::Split(split) => self.split(name, split, &definition.options, span),
             Kind::Parametric(surface) => {
                 let both = self.shows_both_sides(&definition.options);
                 self.parametric(surface, span, both).map(here)

@@ -141,7 +141,7 @@ impl Builder<'_> {
     }
 
     /// A build without the solid library says so.
-    fn needs_solids(&mut self, span: Span) -> Option<()> {
+    pub(super) fn needs_solids(&mut self, span: Span) -> Option<()> {
         if AVAILABLE {
             return Some(());
         }

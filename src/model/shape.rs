@@ -7,7 +7,7 @@ use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::tessellate::{
     ClippedQuadric, Extrusion, FlatPlane, Geodesic, HeightMap, Patchwork, Revolution, RoundedBox, Sheet,
-    Sweep, TrimmedSurface,
+    Sweep, TrimmedSurface, TwoSided,
 };
 
 /// Index of a shape in its model.
@@ -53,6 +53,8 @@ pub enum Recipe {
     Sheet(Sheet),
     /// Heights over a rectangle.
     Height(HeightMap),
+    /// Heights on both sides of a plane.
+    TwoSided(Box<TwoSided>),
     /// Curves as lines.
     Wire(Vec<AnyCurve>),
     /// A surface of the second degree, cut off.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::geometry::number::Bounds;
-use crate::geometry::tessellate::{Closing, HeightMap};
+use crate::geometry::tessellate::{Closing, HeightMap, TwoSided};
 
 /// Distance from a point to a nearest point of the surface, from the place below it downhill along the tangent planes;
 /// never less than the distance to the whole surface.
@@ -43,4 +43,11 @@ pub(super) fn extent(map: &HeightMap) -> Bounds {
     }
     let half = map.size / 2.0;
     Bounds { min: DVec3::new(-half.x, low, -half.y), max: DVec3::new(half.x, high, half.y) }
+}
+
+/// The box around both sides of a plane.
+pub(super) fn extent_of_two(body: &TwoSided) -> Bounds {
+    let [front, back] = [&body.front, &body.back].map(|map| map.field.range().1.max(0.0));
+    let half = body.front.size / 2.0;
+    Bounds { min: DVec3::new(-half.x, -back, -half.y), max: DVec3::new(half.x, front, half.y) }
 }

@@ -13,7 +13,7 @@ use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::{
     DeformError, Deformed, Detail, Deviation, HeightBound, SurfaceDensity, TessellateError, Tessellation,
     cuboid, deform, extrude, geodesic, height_map, patchwork, plane, quadric, revolve, rounded_box, sheet,
-    sweep, trimmed, wire,
+    sweep, trimmed, two_sided, wire,
 };
 use crate::model::{Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing, UvMode};
 
@@ -178,6 +178,7 @@ impl<'a> Maker<'a> {
             Recipe::Quadric(shape) => quadric(shape, &detail),
             Recipe::Trimmed(shape) => trimmed(shape, &detail),
             Recipe::Height(map) => height_map(map, &detail, tolerance / stretch),
+            Recipe::TwoSided(body) => two_sided(body, &detail, tolerance / stretch),
             Recipe::Polygons { mesh, materials } => {
                 return self.finished(shape, self.polygons(handle, mesh, materials)?);
             }

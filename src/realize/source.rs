@@ -24,7 +24,7 @@ use crate::model::{KeptSide, Model, Recipe, ShapeHandle, SolidOperation, SolidRe
 pub(super) fn source_count(recipe: &Recipe) -> u32 {
     match recipe {
         Recipe::Cuboid { .. } => 6,
-        Recipe::Height(_) => 3,
+        Recipe::Height(_) | Recipe::TwoSided(_) => 3,
         Recipe::Revolution(_) => 3,
         Recipe::Sweep(sweep) => mesh::index(sweep.outlines.len()) + 2,
         Recipe::Extrusion(extrusion) => mesh::index(extrusion.outlines.len()) + 2,
@@ -222,6 +222,13 @@ fn kinds(recipe: &Recipe, bends: bool) -> Vec<Kind> {
             let depth = if let Closing::Thickness(depth) = map.close { depth } else { 0.0 };
             let sides = Kind::Flat(Flat::Exact);
             vec![Kind::Height(shared.clone(), 0.0), sides, Kind::Height(shared, -depth)]
+        }
+        Recipe::TwoSided(body) => {
+            let mut back = body.back.clone();
+            back.field = Arc::new(back.field.scaled(-1.0, 0.0));
+            let sides = [body.front.clone(), back].map(|map| Kind::Height(Arc::new(map), 0.0));
+            let [front, back] = sides;
+            vec![front, Kind::Flat(Flat::Exact), back]
         }
         Recipe::Sweep(sweep) => {
             let surface = Arc::new(sweep.surface());
@@ -515,6 +522,7 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
             }
         }
         Recipe::Height(map) => super::height::extent(map),
+        Recipe::TwoSided(body) => super::height::extent_of_two(body),
         Recipe::Patches(patches) => patches.surfaces.iter().map(lattice).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Wire(curves) => curves.iter().map(along).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Quadric(shape) => shape.bounds(),

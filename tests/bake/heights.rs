@@ -246,3 +246,32 @@ fn real_ground_with_gaps_keeps_its_known_cells() {
         assert!((volume - 2.0 * area as f64).abs() < 1e-3 * area as f64, "{volume} {area}");
     }
 }
+
+#[test]
+fn a_split_body_is_one_skin() {
+    // Half balls of 0.5 around the plane, cut where they end: with the plane z = 0 and seen from the back as well.
+    let ball = "[map.m]\ninterpolation = \"bicubic\"\n[map.m.formula]\nf = \"= 0.5 - x ^ 2 - y ^ 2\"\nfrom = [-1, -1]\nto = [1, 1]\ncolumns = 9\nrows = 9\n";
+    let body = |parts: &str| {
+        format!(
+            "tolerance = 0.002\n{ball}[shape.a.split]\nsize = [2, 2]\nmask = [{{ map = \"m\", at-least = 0 }}]\npart = [{parts}]"
+        )
+    };
+    let half = core::f64::consts::PI / 8.0;
+    let front = "{ map = \"m\", normal = [0, 0, 1] }";
+    let back = "{ map = \"m\", normal = [0, 0, -1], mirror = true }";
+    for (parts, halves) in [(front.to_owned(), 1.0), (format!("{front}, {back}"), 2.0)] {
+        let baked = bake(&body(&parts));
+        let facts = &baked.only().facts;
+        assert!(facts.closed && facts.manifold && facts.components == 1);
+        assert_near(facts.volume.expect("closed"), halves * half, 0.005);
+        let deviation = &baked.only().deviation;
+        assert!(deviation.bound <= 0.002 && deviation.measured.is_some_and(|found| found <= deviation.bound));
+    }
+    // A part that is apart, and one that reaches into the first.
+    let apart = bake(&body(&format!("{front}, {back}, {{ map = \"m\", point = [0, 2, 0] }}")));
+    assert_eq!((apart.only().facts.components, apart.only().facts.closed), (2, true));
+    let joined = bake(&body(&format!("{front}, {{ map = \"m\", point = [0, -0.2, 0.1] }}")));
+    let facts = &joined.only().facts;
+    assert!(facts.closed && facts.components == 1);
+    assert!(facts.volume.is_some_and(|volume| volume > half && volume < 2.0 * half));
+}

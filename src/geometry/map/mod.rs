@@ -179,6 +179,17 @@ impl GridField {
         corners.all(|(i, j, used)| !used || self.is_known(*i, *j))
     }
 
+    /// The field seen from the other side: its columns in reverse.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        let mut values = self.values.clone();
+        values.chunks_exact_mut(self.columns).for_each(<[f64]>::reverse);
+        let mut unknown = self.unknown.clone();
+        unknown.chunks_exact_mut(self.columns).for_each(<[bool]>::reverse);
+        let slopes = self.slopes.as_ref().map(|_| Slopes::new(self.columns, &values));
+        Self { values, slopes, unknown, ..*self }
+    }
+
     /// Samples in a row.
     #[must_use]
     pub fn columns(&self) -> usize {

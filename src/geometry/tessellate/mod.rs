@@ -35,7 +35,7 @@ pub use deform::{DeformError, Deformed, deform};
 pub use discretize::{Density, Station, arc_lengths, discretize};
 pub use extrude::{Extrusion, extrude};
 pub use geodesic::{Geodesic, geodesic};
-pub use height::{Closing, HeightBound, HeightMap, Mask, MaskSide, height_map};
+pub use height::{Closing, HeightBound, HeightMap, Mask, MaskSide, TwoSided, height_map, two_sided};
 pub use patch::{Patchwork, Rim, patchwork};
 pub use plane::{FlatPlane, plane};
 pub use quadric::{ClippedQuadric, quadric};

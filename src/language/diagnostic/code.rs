@@ -323,6 +323,8 @@ codes! {
     MapPoints = "K0908";
     /// masks leave nothing of a height map
     NothingKept = "K0909";
+    /// parts of a split body on one plane that cannot be stitched
+    SplitParts = "K0910";
 
     /// this build of Kiln lacks a feature
     MissingFeature = "K0920";

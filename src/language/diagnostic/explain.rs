@@ -394,6 +394,8 @@ examples! {
         "[shape.a.height-map]\nmap = { grid = { rows = [[1, -1], [1, 2]] } }\nsize = [1, 1]\nclose = \"base\"" => "[shape.a.height-map]\nmap = { grid = { rows = [[1, -1], [1, 2]] } }\nsize = [1, 1]\nclose = \"base\"\nbase = -2";
     MapPoints: "Scattered points make a map when they are at different places and not all on one line.",
         "[shape.a.height-map]\nmap = { points = { points = [[0, 0, 1], [1, 1, 2], [2, 2, 3]] } }\nsize = [1, 1]" => "[shape.a.height-map]\nmap = { points = { points = [[0, 0, 1], [1, 1, 2], [0, 2, 3]] } }\nsize = [1, 1]";
+    SplitParts: "Two parts of a split body on one plane that look away from each other are stitched together along the lines of their masks. Their maps need equal numbers of samples for that.",
+        "[shape.a.split]\nsize = [1, 1]\npart = [{ map = { noise = { columns = 9 } }, range = [1, 2] }, { map = { noise = {} }, range = [1, 2], normal = [0, -1, 0] }]" => "[shape.a.split]\nsize = [1, 1]\npart = [{ map = { noise = {} }, range = [1, 2] }, { map = { noise = {} }, range = [1, 2], normal = [0, -1, 0] }]";
     MissingFeature: "Kiln was built without an optional part that the document needs. Cargo features turn such parts on: `csg` has the solid operations. The command line has all of them; a build script that leaves out the default features names those that it needs.",
         "" => "";
     NothingKept: "The masks of a height map keep the places where all of them hold. Where a map nowhere passes its threshold, or only touches it at single samples, no area is left. The message tells how far the map reaches.",

@@ -1,6 +1,6 @@
 //! Shapes from height maps.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use serde_json::Value as Json;
 
 use crate::language::diagnostic::{Code, Diagnostic};
@@ -156,5 +156,54 @@ impl HeightMap {
         let good = reports.is_empty();
         reports.into_iter().for_each(|report| reader.report(report));
         good
+    }
+}
+
+table! {
+    /// A body of parts on split planes: each part is solid between its plane and a height map over it, and all of them
+    /// together are the shape. Two parts on one plane that look away from each other meet there without a wall between
+    /// them: a bust by a map of its face and one of the back of its head. Parts on other planes are joined by union where
+    /// they reach into each other.
+    "split" pub Split {
+        /// Lengths of the rectangle of each part, in the document's unit.
+        size: Sp<DVec2> => Check::above(0.0);
+        /// Conditions on the places that all parts keep.
+        mask: Vec<Mask> = Vec::new();
+        /// The parts.
+        part: Sp<Vec<SplitPart>> => Check::items(1);
+    }
+}
+
+table! {
+    /// A part of a split body: solid from its plane up to the heights of its map.
+    "split part" pub SplitPart {
+        /// The heights: the name of a map, or a map in place. None may be below the plane where the part is kept.
+        map: MapReference;
+        /// The heights of the values 0 and 1 of the map, in the document's unit.
+        range: Sp<DVec2> = DVec2::new(0.0, 1.0);
+        /// Where the part looks from its plane. Along +y columns go to +x and rows to +z, as for a height map; a part
+        /// that looks the opposite way lies over the same places, as if seen through the plane.
+        normal: Sp<DVec3> = DVec3::Y => Check::ANY;
+        /// The middle of the rectangle.
+        point: Sp<DVec3> = DVec3::ZERO;
+        /// Whether columns run the other way: for the picture of a back as who looks at it sees it.
+        mirror: Sp<bool> = false;
+        /// Conditions on the places that this part keeps, besides those of all parts.
+        mask: Vec<Mask> = Vec::new();
+    }
+    checked check
+}
+
+impl SplitPart {
+    fn check(&self, span: Span, reader: &mut Reader<'_>) -> bool {
+        if self.normal.value != DVec3::ZERO {
+            return true;
+        }
+        let place = if self.normal.span.is_none() { span } else { self.normal.span };
+        let report = Diagnostic::error(Code::OutOfRange, "the normal of a plane must not be [0, 0, 0]")
+            .at(place, "looks nowhere")
+            .help("write `normal = [0, 1, 0]`");
+        reader.report(report);
+        false
     }
 }

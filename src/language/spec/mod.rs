@@ -76,7 +76,7 @@ pub use deform::{Along, Bend, CoordinateAxis, Taper, Twist};
 pub use document::{Asset, Definition, Spec, Unit};
 pub use formula::{Formula, FormulaCurve, FormulaForm};
 pub use grid::{Degrees, Directions, Rows};
-pub use height::{HeightBound, HeightClose, HeightMap, Level, Mask};
+pub use height::{HeightBound, HeightClose, HeightMap, Level, Mask, Split, SplitPart};
 pub use implicit::Implicit;
 pub use import::{FilePath, Import, Up};
 pub use joined::Joined;

@@ -106,6 +106,8 @@ const CHAPTERS: [(&str, &str, &[&str]); 6] = [
             "joined",
             "height map",
             "mask",
+            "split",
+            "split part",
             "parametric",
             "mesh",
             "import",

@@ -9,7 +9,7 @@ use crate::language::spec::combine::{Array, Copy, Group, Mirror};
 use crate::language::spec::construct::{choices, kinds, table};
 use crate::language::spec::coons::{Coons, Gordon};
 use crate::language::spec::deform::{Along, Bend, Taper, Twist};
-use crate::language::spec::height::HeightMap;
+use crate::language::spec::height::{HeightMap, Split};
 use crate::language::spec::import::Import;
 use crate::language::spec::joined::Joined;
 use crate::language::spec::kind::{Kinds, take_kind};
@@ -161,6 +161,8 @@ kinds! {
         Joined(Joined) = "joined";
         /// Ground by a map of heights.
         HeightMap(HeightMap) = "height-map";
+        /// Parts on split planes.
+        Split(Split) = "split";
         /// A surface by formulas of u and v.
         Parametric(Parametric) = "parametric";
         /// Points and faces, written out.

@@ -99,10 +99,16 @@ fn add_feet(sheet: &mut Mesh, rim: &[u32], base: f64) -> Vec<PointIndex> {
     rim.iter().map(foot).collect()
 }
 
-/// A wall from each side of a rim down to the points under it; smooth where its sides turn by less than the crease angle.
 fn add_walls(sheet: &mut Mesh, rim: &[u32], under: &[PointIndex], detail: &Detail) {
+    let top: Vec<PointIndex> = rim.iter().map(|at| PointIndex(*at)).collect();
+    add_strip(sheet, &top, under, detail);
+}
+
+/// A wall from a closed line of points down to those under it, with the inside to its left over columns and rows; smooth
+/// where its sides turn by less than the crease angle.
+pub(super) fn add_strip(sheet: &mut Mesh, rim: &[PointIndex], under: &[PointIndex], detail: &Detail) {
     let count = rim.len();
-    let place = |k: usize| flat(sheet.points[rim[k % count] as usize]);
+    let place = |k: usize| flat(sheet.points[rim[k % count].subscript()]);
     // With the sheet to the left over columns and rows, outside is to the right.
     let normals: Vec<DVec3> = (0..count)
         .map(|k| {
@@ -124,12 +130,7 @@ fn add_walls(sheet: &mut Mesh, rim: &[u32], under: &[PointIndex], detail: &Detai
         run += lengths[k];
         let base = mesh::index(sheet.vertices.len());
         let after = (k + 1) % count;
-        let corners = [
-            (PointIndex(rim[k]), 0, 0.0),
-            (PointIndex(rim[after]), 1, 0.0),
-            (under[after], 1, 1.0),
-            (under[k], 0, 1.0),
-        ];
+        let corners = [(rim[k], 0, 0.0), (rim[after], 1, 0.0), (under[after], 1, 1.0), (under[k], 0, 1.0)];
         let vertices = corners.map(|(point, end, down)| Vertex {
             point,
             normal: ends[end],

@@ -14,7 +14,7 @@ use rayon::prelude::{
 use super::chain::{Chain, Side};
 use super::delaunay::{BORDER, Delaunay, Place, next};
 use super::lattice::Lattice;
-use super::region::{Region, rim_edges};
+use super::region::{Keep, Region, rim_edges};
 use super::scan::{Corner, Worst, edge, nodes};
 
 /// What is asked of the triangles.
@@ -26,7 +26,7 @@ pub(super) struct Goal<'r> {
     /// Most triangles.
     pub(super) limit: u64,
     /// What is kept; everything without it.
-    pub(super) region: Option<&'r Region>,
+    pub(super) region: Option<(&'r Region, Keep)>,
     /// A base, how far below it heights are raised to it, and how near to it corners on lines are set on it.
     pub(super) floor: Option<Floor>,
 }
@@ -147,8 +147,8 @@ pub(super) fn begun(
     let mut mesh = Delaunay::new(lattice.far());
     draw_borders(&mut mesh, lattice, chains);
     let mut on_line = vec![false; mesh.places.len()];
-    if let Some(region) = goal.region {
-        let any = region.draw(&mut mesh, lattice).map_err(|_| RefineError::Tangled)?;
+    if let Some((region, keep)) = goal.region {
+        let any = region.draw(&mut mesh, lattice, keep).map_err(|_| RefineError::Tangled)?;
         if !any {
             return Err(RefineError::Empty);
         }

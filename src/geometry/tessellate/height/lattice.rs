@@ -101,6 +101,16 @@ impl<'f> Lattice<'f> {
         Ok(self)
     }
 
+    /// Units to a step of the field.
+    pub(super) fn parts(&self) -> u64 {
+        u64::from(self.units.unsigned_abs()) * u64::from(self.refine)
+    }
+
+    /// The same with so many units to a step of the field, a power of two no less than now.
+    pub(super) fn set_parts(&mut self, parts: u64) -> Result<(), u64> {
+        self.set_units(parts / u64::from(self.refine))
+    }
+
     fn set_units(&mut self, units: u64) -> Result<(), u64> {
         let longest = (self.columns.max(self.rows) as u64).saturating_mul(units);
         match i32::try_from(units) {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::{Closing, HeightBound, HeightMap, Mask, MaskSide, height_map};
+use super::{Closing, HeightBound, HeightMap, Mask, MaskSide, TwoSided, height_map, two_sided};
 use crate::geometry::map::{GridField, Interpolation};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::tessellate::{Detail, SurfaceDensity, TessellateError};
@@ -243,4 +243,65 @@ fn dense_regions_keep_every_sample_inside() {
     for (at, _) in inside {
         assert!(places.contains(&[(at % 30) as f64, (at / 30) as f64].map(f64::to_bits)));
     }
+}
+
+fn volume(mesh: &Mesh) -> f64 {
+    let corners = mesh.triangles.iter().map(|triangle| triangle.map(|at| point(mesh, at)));
+    corners.map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
+}
+
+fn body(front: HeightMap, back: HeightMap, tolerance: f64) -> Mesh {
+    let density = SurfaceDensity::Tolerance(tolerance);
+    let detail = Detail { density, crease_angle: 30.0, uv: true, triangle_limit: 1 << 22 };
+    let made = two_sided(&TwoSided { front, back }, &detail, tolerance).unwrap();
+    assert!(made.deviation.bound <= tolerance);
+    made.mesh
+}
+
+#[test]
+fn two_sides_meet_without_a_wall_between() {
+    let size = DVec2::splat(2.0);
+    let tolerance = 0.002;
+    let side = |center: f64, height: f64| {
+        let disk = sampled(25, 25, Interpolation::Bicubic, |x, y| (x - center) * (x - center) + y * y);
+        let field = sampled(25, 25, Interpolation::Bicubic, |x, y| height * (2.0 - x * x - 0.5 * y));
+        HeightMap { size, ..flat(vec![mask(&disk, 0.3, MaskSide::AtMost)], field, Closing::None) }
+    };
+    // The integral of h (2 - x^2 - y / 2) over a disk around [c, 0]: h (pi r^2) (2 - c^2 - r^2 / 4).
+    let volume_of =
+        |center: f64, height: f64| height * core::f64::consts::PI * 0.3 * (2.0 - center * center - 0.3 / 4.0);
+    for apart in [0.0, 0.2, 0.45] {
+        let mesh = body(side(-apart, 0.3), side(apart, 0.5), tolerance);
+        assert!(is_manifold(&mesh), "{apart}");
+        let exact = volume_of(-apart, 0.3) + volume_of(apart, 0.5);
+        assert!((volume(&mesh) - exact).abs() < 0.01 * exact, "{apart}: {} {exact}", volume(&mesh));
+        // On the plane there are triangles only where one side is alone.
+        let on_plane =
+            mesh.triangles.iter().filter(|triangle| triangle.iter().all(|at| point(&mesh, *at).y == 0.0));
+        assert_eq!(on_plane.count() > 0, apart > 0.0);
+    }
+    // One disk within the other, and a side without any mask.
+    let mut wide = side(0.0, 0.3);
+    wide.masks[0].threshold = 0.6;
+    assert!(is_manifold(&body(wide, side(0.0, 0.5), tolerance)));
+    let whole = HeightMap { masks: Vec::new(), ..side(0.0, 0.3) };
+    assert!(is_manifold(&body(whole.clone(), whole.clone(), tolerance)));
+    assert!(is_manifold(&body(whole, side(0.1, 0.5), tolerance)));
+}
+
+#[test]
+fn lenses_end_sharply_on_their_plane() {
+    // Both sides fall to nothing on their common line: the sheets share it and there are no walls.
+    let lens = sampled(33, 33, Interpolation::Bicubic, |x, y| 0.4 * (0.5 - x * x - y * y));
+    let side = HeightMap {
+        size: DVec2::splat(2.0),
+        ..flat(vec![mask(&lens, 0.0, MaskSide::AtLeast)], lens.clone(), Closing::None)
+    };
+    let mesh = body(side.clone(), side, 0.001);
+    assert!(is_manifold(&mesh));
+    let exact = 2.0 * 0.4 * core::f64::consts::PI * 0.125;
+    assert!((volume(&mesh) - exact).abs() < 0.01 * exact);
+    let walls =
+        mesh.triangles.iter().flatten().filter(|at| mesh.vertices[at.subscript()].anchor.source == 1).count();
+    assert_eq!(walls, 0);
 }

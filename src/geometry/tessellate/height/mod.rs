@@ -21,6 +21,9 @@ mod scribe;
 mod sector;
 #[cfg(test)]
 mod tests;
+mod two_sided;
+
+pub use two_sided::{TwoSided, two_sided};
 
 use std::sync::Arc;
 
@@ -35,7 +38,7 @@ use close::close;
 use delaunay::BORDER;
 use greedy::{Floor, Goal, RefineError, Triangles, begun, refine};
 use lattice::Lattice;
-use region::{Region, RegionError, grain, rims};
+use region::{Keep, Region, RegionError, grain, rims};
 
 /// A field of heights over a rectangle in the x, z plane about the origin: columns go to +x, rows to +z.
 #[derive(Clone, Debug, PartialEq)]
@@ -188,7 +191,8 @@ fn adaptive(
         let along = chains.iter().map(|chain| chain.bound).fold(0.0, f64::max);
         let lattice = lattice.holding(&chains, grain).map_err(too_many)?;
         if region.is_none() && Region::is_needed(shape) {
-            let traced = Region::trace(shape, &lattice, (tolerance, border), limit);
+            let lattices = core::slice::from_ref(&lattice);
+            let traced = Region::trace(&[shape], lattices, (tolerance, border), limit);
             region = Some(traced.map_err(|error| of_region(error, limit))?);
         }
         let slack = if everywhere { lattice.slack } else { 0.0 };
@@ -196,7 +200,7 @@ fn adaptive(
             tolerance: aim - slack,
             everywhere,
             limit,
-            region: region.as_ref(),
+            region: region.as_ref().map(|region| (region, Keep::ONLY)),
             floor: floor(shape, tolerance),
         };
         let made = refine(&lattice, &chains, &goal).map_err(|error| of_refining(error, limit))?;
@@ -232,13 +236,14 @@ fn dense_region(
     let lattice = Lattice::coarse(field).holding(&chains, grain(shape, tolerance));
     let lattice = lattice.map_err(|needed| TessellateError::TooMany { needed, limit })?;
     let rise = border_tolerance(field, aim, tolerance);
-    let region = Region::trace(shape, &lattice, (tolerance, rise), limit);
+    let lattices = core::slice::from_ref(&lattice);
+    let region = Region::trace(&[shape], lattices, (tolerance, rise), limit);
     let region = region.map_err(|error| of_region(error, limit))?;
     let goal = Goal {
         tolerance: aim,
         everywhere: false,
         limit,
-        region: Some(&region),
+        region: Some((&region, Keep::ONLY)),
         floor: floor(shape, tolerance),
     };
     let mut made = begun(&lattice, &chains, &goal).map_err(|error| of_refining(error, limit))?;

@@ -23,15 +23,35 @@ use crate::geometry::map::GridField;
 /// A region by its lines.
 pub(super) struct Region {
     lines: Vec<Lines>,
-    /// Bits that tell masks apart, and those that must be set.
+    /// All bits that tell lines apart.
     all: u32,
-    wanted: u32,
+    /// What each map asks of them.
+    tests: Vec<Test>,
     /// Places of lines to a step of the field.
     pub(super) grain: u64,
     /// How far lines are from the true ones, metres.
     pub(super) error: f64,
     /// Length by which corners are cut off, in places.
     cut: f64,
+}
+
+/// Bits that tell whether a place is kept: among these, those that must be set.
+#[derive(Clone, Copy, Default)]
+struct Test {
+    bits: u32,
+    wanted: u32,
+}
+
+/// Which triangles are kept: those of one map, without those of another.
+#[derive(Clone, Copy)]
+pub(super) struct Keep {
+    pub(super) of: usize,
+    pub(super) without: Option<usize>,
+}
+
+impl Keep {
+    /// What the only map keeps.
+    pub(super) const ONLY: Self = Self { of: 0, without: None };
 }
 
 /// Why a region has no lines.
@@ -69,63 +89,84 @@ impl Region {
         !shape.masks.is_empty() || shape.field.has_gaps()
     }
 
-    /// Traces the lines of the masks. Their chords are within `rise` of the heights on the lattice.
+    /// Traces the lines of the masks of maps over one grid. Their chords are within `rise` of the heights on all lattices.
     pub(super) fn trace(
-        shape: &HeightMap,
-        lattice: &Lattice<'_>,
+        maps: &[&HeightMap],
+        lattices: &[Lattice<'_>],
         (tolerance, rise): (f64, f64),
         limit: u64,
     ) -> Result<Self, RegionError> {
+        let shape = maps[0];
         let [right, bottom] = shape.field.extent();
         let grain = grain(shape, tolerance);
         let step = shape.size / DVec2::new(right, bottom);
         let unit = step.max_element() / grain as f64;
         let error = tolerance * SHARE;
-        let scribe = Scribe { shape, lattice, rise, grain, error, limit };
+        let scribe = Scribe { shape, lattices, rise, grain, error, limit };
         let mut region = Self {
             lines: Vec::new(),
             all: 0,
-            wanted: 0,
+            tests: Vec::new(),
             grain,
             error: error + 1.5 * unit,
             cut: (error / unit / 2.0).max(4.0),
         };
-        for mask in &shape.masks {
-            let lines = scribe.mask(region.next_bit(), &mask.field, mask.threshold)?;
-            region.add(lines, mask.side == MaskSide::AtLeast);
-            if mask.side == MaskSide::AtMost {
-                let bit = 1 << region.all.ilog2();
-                let level = level_cells(&mask.field, mask.threshold);
-                region.lines.extend(scribe.cells(bit, &mask.field, &level));
-            }
-            region.add_gaps(&scribe, &mask.field);
+        for map in maps {
+            region.add_map(&scribe, map)?;
         }
-        region.add_gaps(&scribe, &shape.field);
         Ok(region)
     }
 
-    fn next_bit(&self) -> u32 {
-        self.all + 1
+    fn add_map(&mut self, scribe: &Scribe<'_>, map: &HeightMap) -> Result<(), RegionError> {
+        let mut test = Test::default();
+        for mask in &map.masks {
+            let bit = self.next_bit();
+            self.lines.push(scribe.mask(bit, &mask.field, mask.threshold)?);
+            test.bits |= bit;
+            match mask.side {
+                MaskSide::AtLeast => test.wanted |= bit,
+                MaskSide::AtMost => {
+                    let level = level_cells(&mask.field, mask.threshold);
+                    self.lines.extend(scribe.cells(bit, &mask.field, &level));
+                }
+            }
+            self.add_gaps(scribe, &mask.field, &mut test);
+        }
+        self.add_gaps(scribe, &map.field, &mut test);
+        self.tests.push(test);
+        Ok(())
     }
 
-    fn add(&mut self, lines: Lines, above: bool) {
-        self.all |= lines.bit;
-        self.wanted |= if above { lines.bit } else { 0 };
-        self.lines.push(lines);
+    /// A bit for the next line.
+    fn next_bit(&mut self) -> u32 {
+        let bit = self.all + 1;
+        self.all |= bit;
+        bit
     }
 
     /// Keeps cells whose samples all have values.
-    fn add_gaps(&mut self, scribe: &Scribe<'_>, field: &GridField) {
+    fn add_gaps(&mut self, scribe: &Scribe<'_>, field: &GridField, test: &mut Test) {
         if field.has_gaps() {
             let bit = self.next_bit();
-            self.all |= bit;
-            self.wanted |= bit;
+            test.bits |= bit;
+            test.wanted |= bit;
             self.lines.extend(scribe.cells(bit, field, &|i, j| field.knows(i, j)));
         }
     }
 
+    /// Whether triangles on these sides of the lines are kept.
+    fn keeps(&self, keep: Keep, side: u32) -> bool {
+        let holds = |test: &Test| side & test.bits == test.wanted;
+        holds(&self.tests[keep.of]) && !keep.without.is_some_and(|other| holds(&self.tests[other]))
+    }
+
     /// Draws the lines and marks the triangles that are kept. Whether any is.
-    pub(super) fn draw(&self, mesh: &mut Delaunay, lattice: &Lattice<'_>) -> Result<bool, Tangled> {
+    pub(super) fn draw(
+        &self,
+        mesh: &mut Delaunay,
+        lattice: &Lattice<'_>,
+        keep: Keep,
+    ) -> Result<bool, Tangled> {
         let factor = whole(f64::from(lattice.units) * f64::from(lattice.refine) / self.grain as f64).max(1);
         mesh.allow_lines();
         let mut near = 0;
@@ -156,7 +197,7 @@ impl Region {
         let sides = mesh.sides_of_lines()?;
         self.part(mesh, sides, f64::from(factor))?;
         let sides = mesh.sides_of_lines()?;
-        mesh.kept = sides.iter().map(|side| side & self.all == self.wanted).collect();
+        mesh.kept = sides.iter().map(|side| self.keeps(keep, *side)).collect();
         self.forget(mesh);
         Ok(mesh.kept.contains(&true))
     }

@@ -37,7 +37,7 @@ pub(super) fn level_cells(field: &GridField, threshold: f64) -> impl Fn(usize, u
 /// Brings lines onto the grid.
 pub(super) struct Scribe<'s> {
     pub(super) shape: &'s HeightMap,
-    pub(super) lattice: &'s Lattice<'s>,
+    pub(super) lattices: &'s [Lattice<'s>],
     pub(super) rise: f64,
     pub(super) grain: u64,
     pub(super) error: f64,
@@ -142,13 +142,15 @@ impl Scribe<'_> {
 
     /// Where a chord is too far from the heights over it, on the grid.
     fn rises(&self, ends: [Place; 2]) -> Option<Place> {
-        let factor = f64::from(self.lattice.units) * f64::from(self.lattice.refine) / self.grain as f64;
-        let corner = |place: Place| {
-            let place = place.map(|part| whole(f64::from(part) * factor));
-            (place, self.lattice.height(place))
-        };
-        let worst = edge(self.lattice, corner(ends[0]), corner(ends[1]));
-        (worst.error > self.rise).then(|| worst.place.map(|part| whole(part / factor)))
+        self.lattices.iter().find_map(|lattice| {
+            let factor = lattice.parts() as f64 / self.grain as f64;
+            let corner = |place: Place| {
+                let place = place.map(|part| whole(f64::from(part) * factor));
+                (place, lattice.height(place))
+            };
+            let worst = edge(lattice, corner(ends[0]), corner(ends[1]));
+            (worst.error > self.rise).then(|| worst.place.map(|part| whole(part / factor)))
+        })
     }
 }
 
