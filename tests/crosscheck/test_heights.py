@@ -256,3 +256,27 @@ def test_real_masks_have_their_components_and_volume(kiln: Kiln, name: str) -> N
     # At a half, cells with two white corners across are joined in their middle: white pixels touch over corners too.
     _, count = label(mask > 0.5, np.ones((3, 3)))
     assert facts["components"] == count
+
+
+def test_a_split_body_has_the_volume_of_both_integrals(kiln: Kiln) -> None:
+    front, back = 2 + hills(15, 18, seed=11), 3 + hills(15, 18, seed=12)
+    mask, size, tolerance = hills(13, 16, seed=13), (3.0, 2.0), 1e-3
+    part = "{{ map = {{ grid = {{ rows = {rows} }} }}, range = [0, 0.2], normal = {normal} }}"
+    baked = kiln.bake(
+        f"tolerance = {tolerance}\n[map.m.grid]\nrows = {mask.tolist()}\n"
+        f'[shape.a.split]\nsize = {list(size)}\nmask = [{{ map = "m", at-least = 0.1 }}]\npart = ['
+        f"{part.format(rows=front.tolist(), normal=[0, 1, 0])}, {part.format(rows=back.tolist(), normal=[0, -1, 0])}]\n"
+    )
+    facts = baked.shape("a")
+    assert facts["closed"]
+    assert facts["manifold"]
+    fields = [field_of(heights, "bilinear") for heights in (mask, front, back)]
+    x, y = np.meshgrid((np.arange(1500) + 0.5) / 1500, (np.arange(1000) + 0.5) / 1000)
+    of = [
+        field(x.ravel() * (shape[1] - 1), y.ravel() * (shape[0] - 1))
+        for field, shape in zip(fields, (mask.shape, front.shape, back.shape), strict=True)
+    ]
+    inside = of[0] >= 0.1
+    exact = 0.2 * (of[1] + of[2])[inside].sum() / inside.size * size[0] * size[1]
+    # The tolerance over the area on both sides, and a quarter of it along the line on a wall of a meter.
+    assert abs(facts["volume"] - exact) < 2 * tolerance * size[0] * size[1]

@@ -79,7 +79,7 @@ pub fn two_sided(shape: &TwoSided, detail: &Detail, tolerance: f64) -> Result<Te
             floor,
         };
         let side = refine(lattice, &chains, &goal).map_err(|error| of_refining(error, limit))?;
-        bound = bound.max(side.error.max(side.along_rims(lattice)) + 2.0 * lattice.slack);
+        bound = bound.max(side.error.max(side.along_rims(lattice)) + lattice.slack);
         made.push(side);
     }
     let mut body = Body::new(shape, detail, &lattices[0]);
