@@ -42,25 +42,47 @@ fn polished(
     (from, to): (f64, f64),
     ((mut nearest, mut t), side): ((f64, f64), Side),
 ) -> (f64, f64) {
+    let square = |t: f64| curve.point(t).distance_squared(point);
+    let settled = 1e-9 * (to - from).abs();
     for _ in 0..8 {
         let jet = curve.evaluate(t, side);
         let away = jet.point - point;
         let slope = away.dot(jet.first);
         let bend = jet.first.length_squared() + away.dot(jet.second);
-        if bend <= 0.0 {
-            break;
-        }
         let next = (t - slope / bend).clamp(from.min(to), from.max(to));
-        if next == t {
+        if bend > 0.0 && (next - t).abs() <= settled {
             break;
         }
-        let reached = curve.point(next).distance_squared(point);
+        let reached = if bend > 0.0 { square(next) } else { f64::INFINITY };
         if reached >= nearest {
-            break;
+            // Far from a parabola, as beside the tip of a slender ellipse.
+            let (found, at) = sectioned(&square, (from, to));
+            return if found < nearest { (found, at) } else { (nearest, t) };
         }
         (t, nearest) = (next, reached);
     }
     (nearest, t)
+}
+
+/// The least value of a function with one valley between two places, by golden sections: J. Kiefer, Sequential
+/// minimax search for a maximum, 1953.
+fn sectioned(value: &impl Fn(f64) -> f64, (mut from, mut to): (f64, f64)) -> (f64, f64) {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    let inner = |from: f64, to: f64| (to - (to - from) * GOLDEN, from + (to - from) * GOLDEN);
+    let (mut low, mut high) = inner(from, to);
+    let (mut below, mut above) = (value(low), value(high));
+    for _ in 0..48 {
+        if below <= above {
+            (to, high, above) = (high, low, below);
+            low = inner(from, to).0;
+            below = value(low);
+        } else {
+            (from, low, below) = (low, high, above);
+            high = inner(from, to).1;
+            above = value(high);
+        }
+    }
+    if below <= above { (below, low) } else { (above, high) }
 }
 
 #[cfg(test)]
@@ -68,8 +90,24 @@ mod tests {
     use glam::DVec3;
 
     use super::distance_within;
-    use crate::geometry::curve::{EllipseArc, Polyline};
+    use crate::geometry::curve::{Curve as _, EllipseArc, Polyline, Side};
     use crate::geometry::number::{cos_degrees, sin_degrees};
+
+    /// A quarter of an ellipse twenty times as long as wide, and places on its normals.
+    #[test]
+    fn slender_ellipses_are_found() {
+        let (x, y) = (DVec3::new(0.01, 0.0, 0.0), DVec3::new(0.0, 0.2, 0.0));
+        let arc = EllipseArc { center: DVec3::ZERO, x, y, from: 0.0, to: 90.0 };
+        for k in 0..=60 {
+            let t = 1.5 * f64::from(k);
+            let (place, along) = (arc.point(t), arc.direction(t, Side::After));
+            for away in [1e-6, 1e-4, 2e-4] {
+                let point = place - DVec3::new(-along.y, along.x, 0.0) * away;
+                let found = distance_within(&arc, point, 0.0, 90.0);
+                assert!(found <= away * (1.0 + 1e-6), "{t} {away} {found}");
+            }
+        }
+    }
 
     #[test]
     fn distance_to_an_arc_is_that_to_the_circle() {

@@ -115,7 +115,13 @@ pub(super) struct Front {
     /// The place of each point, and the share of the way at which it came to be.
     pub(super) points: Vec<(DVec2, f64)>,
     /// Lengths below this are nothing.
-    nothing: f64,
+    pub(super) nothing: f64,
+    /// For each point the one whose place it shares: itself, or an earlier one.
+    same: Vec<u32>,
+    /// Number of points before the present advance.
+    settled: usize,
+    /// Whether anything so short was left out.
+    pub(super) merged: bool,
     /// Faces whose neighbors' normals differ by less look smooth: the cosine.
     crease: f64,
 }
@@ -128,6 +134,9 @@ pub struct Collision {
     /// Where.
     pub place: DVec2,
 }
+
+/// Lengths below this share of the reach are nothing: in single precision their ends are one place.
+const NOTHING: f64 = 2e-7;
 
 /// An edge that will vanish.
 #[derive(PartialEq)]
@@ -165,7 +174,10 @@ impl Front {
             loops: Vec::new(),
             depth: 0.0,
             points: Vec::new(),
-            nothing: 1e-12 * size,
+            nothing: NOTHING * size,
+            same: Vec::new(),
+            settled: 0,
+            merged: false,
             crease,
         };
         let step = fan_step(deepest, round);
@@ -186,8 +198,7 @@ impl Front {
         let count = corners.len();
         let direction = |k: usize| (corners[(k + 1) % count].place - corners[k].place).normalize_or_zero();
         for (k, corner) in corners.iter().enumerate() {
-            let point = self.points.len();
-            self.points.push((corner.place, 0.0));
+            let point = self.point(corner.place, 0.0) as usize;
             let (before, after) = (direction((k + count - 1) % count), direction(k));
             let turn = before.perp_dot(after);
             let angle = acos(before.dot(after).clamp(-1.0, 1.0));
@@ -285,6 +296,7 @@ impl Front {
     /// # Errors
     /// When a polygon vanishes before, or folds onto itself.
     pub(super) fn advance(&mut self, depth: f64) -> Result<Vec<Face>, Collision> {
+        self.settled = self.points.len();
         let mut faces = Vec::new();
         let mut events = BinaryHeap::new();
         for edge in 0..self.edges.len() {
@@ -362,13 +374,37 @@ impl Front {
     /// pass at one place they pass at one depth.
     fn meeting_point(&mut self, edge: usize, place: DVec2, share: f64) -> u32 {
         let ends = [self.edges[edge].left.last(), self.edges[edge].right.last()];
-        let known = ends.into_iter().flatten().find(|passed| passed.place.distance(place) <= self.nothing);
-        known.map(|passed| passed.point).unwrap_or_else(|| self.point(place, share))
+        let here = |passed: &&Passed| passed.place.distance(place) <= self.nothing;
+        let known: Vec<u32> = ends.into_iter().flatten().filter(here).map(|passed| passed.point).collect();
+        self.merged |= !known.is_empty();
+        if let [one, other] = known[..] {
+            self.unite(one, other);
+        }
+        known.first().copied().unwrap_or_else(|| self.point(place, share))
     }
 
     fn point(&mut self, place: DVec2, share: f64) -> u32 {
+        let point = mesh::index(self.points.len());
         self.points.push((place, share));
-        mesh::index(self.points.len() - 1)
+        self.same.push(point);
+        point
+    }
+
+    /// The point that stands for a point.
+    pub(super) fn stand_in(&self, mut point: u32) -> u32 {
+        while self.same[point as usize] != point {
+            point = self.same[point as usize];
+        }
+        point
+    }
+
+    /// Makes one of two points that share a place, unless faces that are told already know them apart.
+    fn unite(&mut self, one: u32, other: u32) {
+        let (one, other) = (self.stand_in(one), self.stand_in(other));
+        let (first, second) = (one.min(other), one.max(other));
+        if second as usize >= self.settled {
+            self.same[second as usize] = first;
+        }
     }
 
     /// Normals of three faces where the middle one ends: those that look smooth side by side share one.
@@ -398,6 +434,7 @@ impl Front {
                 let passed = [self.edges[*edge].left.last(), self.edges[previous].right.last()];
                 let passed = passed.into_iter().flatten().find(|_| moved).copied();
                 let passed = passed.filter(|passed| passed.place.distance(place) <= self.nothing);
+                self.merged |= passed.is_some();
                 // An edge of no length has both its ends at one point.
                 let before = (k > 0).then(|| reached[previous]);
                 let before = before.filter(|(_, there)| there.distance(place) <= self.nothing);
@@ -443,7 +480,8 @@ impl Front {
         let polygon = |first: &usize| {
             let start = |edge: usize| self.edges[edge].left[0];
             let starts = self.around(*first).into_iter().map(start);
-            let mut corners: Vec<(u32, DVec2)> = starts.map(|passed| (passed.point, passed.place)).collect();
+            let mut corners: Vec<(u32, DVec2)> =
+                starts.map(|passed| (self.stand_in(passed.point), passed.place)).collect();
             corners.dedup_by_key(|(point, _)| *point);
             corners
         };

@@ -135,7 +135,7 @@ pub(super) fn bevel(
     detail.allow(2 * chords as u64 * (rows.lower.len() + rows.upper.len()) as u64)?;
     let corners: Vec<Vec<Corner>> =
         outlines.iter().map(|outline| polygon(outline, detail.crease_angle)).collect();
-    let mut maker = Maker { mesh: Mesh::default(), known: HashMap::new(), detail };
+    let mut maker = Maker { mesh: Mesh::default(), known: HashMap::new(), detail, merged: 0.0 };
     let upper = maker.side(&corners, &rows.upper, &shares, None)?;
     let lower = if rows.lower.len() > 1 {
         maker.side(&corners, &rows.lower, &shares, Some(chords))?
@@ -154,13 +154,13 @@ pub(super) fn bevel(
             }
         }
     }
-    let mut mesh = maker.mesh;
+    let (mut mesh, merged) = (maker.mesh, maker.merged);
     mesh.runs = vec![Run { origin: 0, end: mesh::index(mesh.triangles.len()) }];
     let stations = outlines.iter().flat_map(|outline| &outline.stations);
     let chords = stations.map(|station| station.deviation).fold(0.0, f64::max);
     let fans =
         if corners.iter().any(|corners| turns_out(corners)) { shares.fan(profile.deepest()) } else { 0.0 };
-    let bound = chords + fans + rows.deviation;
+    let bound = chords + fans + rows.deviation + merged;
     Ok(Tessellation { mesh, deviation: Deviation::new(bound, Evidence::Proved) })
 }
 
@@ -292,6 +292,8 @@ struct Maker<'a> {
     mesh: Mesh,
     known: HashMap<Key, VertexIndex>,
     detail: &'a Detail,
+    /// The greatest length that was left out.
+    merged: f64,
 }
 
 impl Maker<'_> {
@@ -323,9 +325,15 @@ impl Maker<'_> {
                 points.push(PointIndex(mesh::index(self.mesh.points.len())));
                 self.mesh.points.push(place.extend(mix([from.z, to.z], *share)));
             }
-            for face in &faces {
-                self.face(&front.stretches[face.edge], face, &level, &points)?;
+            for mut face in faces {
+                for passed in face.left.iter_mut().chain(&mut face.right) {
+                    passed.point = front.stand_in(passed.point);
+                }
+                self.face(&front.stretches[face.edge], &face, &level, &points)?;
             }
+        }
+        if front.merged {
+            self.merged = self.merged.max(front.nothing);
         }
         let polygons = front.polygons().into_iter();
         Ok(polygons
