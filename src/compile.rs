@@ -2,6 +2,7 @@
 
 mod notice;
 mod solid;
+mod subdivide;
 
 use notice::noticed;
 
@@ -144,6 +145,9 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
     if let RealizeError::Solid { shape, part, fault } = error {
         return solid::refused(built, *shape, *part, fault);
     }
+    if let RealizeError::Subdivide { shape, cage, fault } = error {
+        return subdivide::refused(built, *shape, *cage, fault);
+    }
     let name = &built.model.shape(shape).name;
     let (code, help) = match error {
         RealizeError::Limit { .. }
@@ -183,6 +187,7 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
             (Code::NoLength, "write another `axis`, or `from` and `to` inside the shape")
         }
         RealizeError::Solid { .. } => (Code::NoSolid, "see the parts of it"),
+        RealizeError::Subdivide { .. } => (Code::BadCage, "see its cage"),
         RealizeError::Polygons(_) => (Code::BadMesh, "check the indices of the faces"),
     };
     Diagnostic::error(code, format!("shape `{name}` cannot be made: {error}"))

@@ -15,6 +15,7 @@
 //! | `geometry::curve` | `geometry::number`, `geometry::formula` |
 //! | `geometry::mesh` | `geometry::number`, `geometry::planar` |
 //! | `geometry::solid` | `geometry::number`, `geometry::mesh` |
+//! | `geometry::subdivide` | `geometry::number`, `geometry::mesh` |
 //! | `geometry::surface` | `geometry::number`, `geometry::formula`, `geometry::curve` |
 //! | `geometry::field` | `geometry::number` |
 //! | `geometry::map` | `geometry::number` |

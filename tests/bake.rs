@@ -27,6 +27,7 @@ mod refusals;
 mod shading;
 mod shapes;
 mod solids;
+mod subdivisions;
 mod sweeps;
 mod triangles;
 mod trimmed;

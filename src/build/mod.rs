@@ -40,6 +40,7 @@ mod shape;
 mod solid;
 mod spline;
 mod split;
+mod subdivide;
 mod svg;
 mod sweep;
 mod trimmed;

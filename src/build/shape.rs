@@ -155,6 +155,7 @@ impl Builder<'_> {
             Kind::Hull(hull) => self.hull(name, hull, span).map(here),
             Kind::MinkowskiRound(round) => self.minkowski_round(name, round, span).map(here),
             Kind::Shell(shell) => self.shell(name, shell, span).map(here),
+            Kind::Subdivide(written) => self.subdivide(name, written).map(here),
             Kind::Group(group) => {
                 let parts: Vec<_> = (group.of.iter().enumerate())
                     .map(|(index, part)| self.shape_of(name, index, part))

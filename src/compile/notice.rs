@@ -44,8 +44,16 @@ fn words(note: &Note, written: bool) -> (&Faces, Words) {
         Note::Dropped(faces) => (faces, Words { code: Code::ImportNote, ..DROPPED }),
         Note::Flat(faces) => (faces, FLAT),
         Note::Crossing(faces) => (faces, CROSSING),
+        Note::Triangulated(faces) => (faces, TRIANGULATED),
     }
 }
+
+const TRIANGULATED: Words = Words {
+    code: Code::NeedsTriangles,
+    one: "of the cage is cut into triangles first, as the scheme is one of triangles",
+    many: "of the cage are cut into triangles first, as the scheme is one of triangles",
+    help: None,
+};
 
 const DROPPED: Words = Words {
     code: Code::FlatFace,

@@ -12,5 +12,6 @@ pub mod number;
 pub mod planar;
 pub mod profile;
 pub mod solid;
+pub mod subdivide;
 pub mod surface;
 pub mod tessellate;

@@ -8,6 +8,7 @@ mod deform;
 mod material;
 mod shape;
 mod solid;
+mod subdivide;
 
 pub use deform::{AxialBending, Bending, PathBending};
 pub use material::{
@@ -15,6 +16,7 @@ pub use material::{
 };
 pub use shape::{Density, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode};
 pub use solid::{Hollow, KeptSide, PlaneCut, SolidOperation, SolidRecipe};
+pub use subdivide::SubdivisionRecipe;
 
 use glam::{DQuat, DVec3};
 

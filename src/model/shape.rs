@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec2, DVec3};
 
-use super::{Bending, MaterialHandle, SolidRecipe};
+use super::{Bending, MaterialHandle, SolidRecipe, SubdivisionRecipe};
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::tessellate::{
@@ -77,6 +77,8 @@ pub enum Recipe {
     },
     /// Closed shapes as solids.
     Solid(SolidRecipe),
+    /// A cage refined toward a smooth surface.
+    Subdivided(SubdivisionRecipe),
     /// Other shapes, each under maps; more than one map makes as many copies.
     Assembly(Vec<(ShapeHandle, DAffine3)>),
 }

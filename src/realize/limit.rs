@@ -86,7 +86,7 @@ pub(super) fn least_triangles(model: &Model) -> Vec<u64> {
                 parts.iter().fold(0, |sum: u64, (part, _)| sum.saturating_add(all[part.0 as usize]))
             }
             Recipe::Deformed { of, .. } => all[of.0 as usize],
-            Recipe::Solid(_) => 1,
+            Recipe::Solid(_) | Recipe::Subdivided(_) => 1,
             Recipe::Cuboid { .. } => 12,
             Recipe::RoundedBox(_) => 44,
             Recipe::Height(_) | Recipe::TwoSided(_) => 2,

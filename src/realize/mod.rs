@@ -17,6 +17,7 @@ mod reach;
 mod shape;
 mod solid;
 mod source;
+mod subdivide;
 mod swept;
 
 pub use source::{Source, Sources, Window, sources};
@@ -25,6 +26,7 @@ use thiserror::Error;
 
 use crate::geometry::mesh::polygon::PolygonError;
 use crate::geometry::solid::SolidFault;
+use crate::geometry::subdivide::SubdivideFault;
 use crate::geometry::tessellate::{DeformError, TessellateError};
 use crate::model::{Model, ShapeHandle};
 use crate::scene::Scene;
@@ -57,6 +59,16 @@ pub enum RealizeError {
         part: Option<ShapeHandle>,
         /// Why.
         fault: SolidFault,
+    },
+    /// A cage cannot be refined.
+    #[error("{fault}")]
+    Subdivide {
+        /// The subdivision.
+        shape: ShapeHandle,
+        /// Its cage.
+        cage: ShapeHandle,
+        /// Why.
+        fault: SubdivideFault,
     },
     /// More vertices or bytes than allowed.
     #[error("this would make at least {needed} {what}, and the limit is {limit}")]
@@ -98,6 +110,8 @@ pub enum Note {
     Flat(Faces),
     /// Faces that cross themselves: they fold.
     Crossing(Faces),
+    /// Faces of a cage that were cut into triangles for the scheme; the first is not told.
+    Triangulated(Faces),
 }
 
 /// Some faces of a shape.

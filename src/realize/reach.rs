@@ -55,6 +55,7 @@ impl Search<'_> {
                 moved(&map, of_points(points.map(|point| bending.apply(point).point), local))
             }
             Recipe::Solid(solid) => self.solid(solid, &map, direction),
+            Recipe::Subdivided(refined) => self.shape(refined.cage, &map, direction),
             recipe => moved(&map, of_recipe(recipe, local)),
         }
     }
@@ -131,6 +132,7 @@ impl Gathering<'_> {
                     self.all.extend(box_lattice(&self.extents.bounds(handle)).into_iter().map(map));
                 }
             }
+            Recipe::Subdivided(refined) => self.shape(refined.cage, &placed),
             recipe => self.all.extend(cloud(recipe).into_iter().map(placed)),
         }
     }

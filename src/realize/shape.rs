@@ -52,7 +52,7 @@ pub(super) struct Inherited {
 
 impl Inherited {
     /// Behind a map that stretches lengths.
-    fn within(self, map: &DAffine3) -> Self {
+    pub(super) fn within(self, map: &DAffine3) -> Self {
         let stretch = stretch(&map.matrix3);
         Self {
             tolerance: self.tolerance.map(|tolerance| tolerance / stretch),
@@ -112,6 +112,9 @@ impl<'a> Maker<'a> {
             }
             Recipe::Solid(recipe) => {
                 self.solid(handle, recipe, wanted.within(&shape.options.placement), next_source)?
+            }
+            Recipe::Subdivided(recipe) => {
+                self.subdivided(handle, recipe, wanted.within(&shape.options.placement), next_source)?
             }
             recipe => {
                 let mut made = self.leaf(handle, wanted)?;
@@ -189,7 +192,7 @@ impl<'a> Maker<'a> {
                 });
                 return self.finished(shape, made.map_err(|error| self.in_terms_of_limits(error))?);
             }
-            Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) => {
+            Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) | Recipe::Subdivided(_) => {
                 Ok(Tessellation { mesh: Mesh::default(), deviation: Deviation::NONE })
             }
         };
@@ -457,6 +460,7 @@ fn shows_texture(model: &Model, handle: ShapeHandle) -> bool {
         let of_parts = match &shape.recipe {
             Recipe::Assembly(parts) => parts.iter().any(|(part, _)| shows[part.0 as usize]),
             Recipe::Deformed { of, .. } => shows[of.0 as usize],
+            Recipe::Subdivided(refined) => shows[refined.cage.0 as usize],
             Recipe::Solid(solid) => solid.parts.iter().any(|part| shows[part.0 as usize]),
             Recipe::Polygons { materials, .. } => materials.iter().flatten().any(textured),
             _ => false,

@@ -340,6 +340,7 @@ fn may_cross(model: &Model, handle: ShapeHandle) -> bool {
                 | Recipe::Trimmed(_)
                 | Recipe::Polygons { .. }
                 | Recipe::Deformed { .. }
+                | Recipe::Subdivided(_)
         )
     })
 }

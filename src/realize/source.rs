@@ -14,6 +14,7 @@ use crate::geometry::curve::{AnyCurve, Curve, Domain, Side, nearest_within};
 use crate::geometry::field::Quadric;
 use crate::geometry::mesh::{self, Anchor};
 use crate::geometry::number::{Bounds, hypot};
+use crate::geometry::subdivide::Scheme;
 use crate::geometry::surface::{AnySurface, Deformation, Surface as _, SweptWall};
 use crate::geometry::tessellate::{
     ClippedQuadric, Closing, DeformError, Density, HeightMap, RoundedBox, Route, discretize,
@@ -35,6 +36,7 @@ pub(super) fn source_count(recipe: &Recipe) -> u32 {
         | Recipe::Geodesic(_)
         | Recipe::Plane(_)
         | Recipe::Sheet(_) => 1,
+        Recipe::Subdivided(_) => 1,
         Recipe::Wire(curves) => mesh::index(curves.len()),
         Recipe::Quadric(_) => ClippedQuadric::SOURCES,
         Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) => 0,
@@ -154,6 +156,7 @@ impl Collector<'_> {
                 }));
             }
             Recipe::Solid(solid) => self.collect_solid(solid, &map, bends, all),
+            Recipe::Subdivided(_) => all.push(Source { kind: Kind::Derived, map, back: map.inverse() }),
             recipe => {
                 let kinds = kinds(recipe, bends).into_iter();
                 all.extend(kinds.map(|kind| Source { kind, map, back: map.inverse() }));
@@ -251,7 +254,9 @@ fn kinds(recipe: &Recipe, bends: bool) -> Vec<Kind> {
             (0..ClippedQuadric::SOURCES).map(kind).collect()
         }
         Recipe::Wire(curves) => curves.iter().map(|curve| Kind::Line(curve.clone())).collect(),
-        Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) => Vec::new(),
+        Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) | Recipe::Subdivided(_) => {
+            Vec::new()
+        }
     }
 }
 
@@ -443,6 +448,7 @@ pub(super) fn extents(model: &Model) -> Extents {
                 own
             }
             Recipe::Solid(solid) => of_solid(&all, solid),
+            Recipe::Subdivided(refined) => of_cage(&all.bounds(refined.cage), refined.scheme),
             recipe => extent(recipe),
         };
         all.boxes.push(mapped(&own, &shape.options.placement));
@@ -460,6 +466,12 @@ fn of_solid(all: &Extents, solid: &SolidRecipe) -> Bounds {
     }
     let growth = solid.growth().max(0.0);
     Bounds { min: bounds.min - growth, max: bounds.max + growth }
+}
+
+/// The box of a subdivision surface: its points lie between those of the cage, but for the scheme that goes through them.
+fn of_cage(cage: &Bounds, scheme: Scheme) -> Bounds {
+    let more = if scheme == Scheme::Butterfly { cage.diagonal() / 4.0 } else { 0.0 };
+    Bounds { min: cage.min - more, max: cage.max + more }
 }
 
 /// The box around a mapped box.
@@ -527,7 +539,9 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
         Recipe::Wire(curves) => curves.iter().map(along).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Quadric(shape) => shape.bounds(),
         Recipe::Trimmed(shape) => shape.bounds(),
-        Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) => Bounds::EMPTY,
+        Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) | Recipe::Subdivided(_) => {
+            Bounds::EMPTY
+        }
     }
 }
 

@@ -378,6 +378,18 @@ examples! {
     NoFaceThere: "A hollow opens through flat faces: `open` names the plane that one lies in, and its normal looks out of the shape.",
         "[shape.a.box]\nsize = [2, 2, 2]\n[shape.b.shell]\nof = \"a\"\nthickness = 0.2\nopen = [{ normal = [0, 1, 0], point = [0, 0.9, 0] }]" =>
         "[shape.a.box]\nsize = [2, 2, 2]\n[shape.b.shell]\nof = \"a\"\nthickness = 0.2\nopen = [{ normal = [0, 1, 0], point = [0, 1, 0] }]";
+    BadCage: "A cage is a surface: at most two faces share an edge, neighbors turn the same way, faces around a vertex form one fan, and each vertex belongs to a face. The message names the vertices, which count from 0.",
+        "[shape.a.subdivide]\ncage = { mesh = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], faces = [[0, 1, 2], [0, 1, 3]] } }" =>
+        "[shape.a.subdivide]\ncage = { mesh = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], faces = [[0, 1, 2], [1, 0, 3]] } }";
+    NoCageEdge: "A crease names an edge by its two vertices, which are neighbors along a side of a face. Vertices count from 0 in the order of the cage.",
+        "[shape.a.subdivide]\ncage = { box = { size = [1, 1, 1] } }\ncreases = [{ edges = [[0, 7]] }]" =>
+        "[shape.a.subdivide]\ncage = { box = { size = [1, 1, 1] } }\ncreases = [{ edges = [[0, 1]] }]";
+    NeedsTriangles: "The schemes \"loop\", \"sqrt3\" and \"butterfly\" split triangles. With `triangulate = true` other faces are cut into triangles first, with a warning.",
+        "[shape.a.subdivide]\ncage = { box = { size = [1, 1, 1] } }\nscheme = \"loop\"" =>
+        "[shape.a.subdivide]\ncage = { box = { size = [1, 1, 1] } }\nscheme = \"catmull-clark\"";
+    OddLevels: "The sqrt(3) scheme cuts the edges of a border in three in every second level; after an odd number the border stands between two steps.",
+        "[shape.a.subdivide]\ncage = { mesh = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], faces = [[0, 1, 2]] } }\nscheme = \"sqrt3\"\nlevels = 3" =>
+        "[shape.a.subdivide]\ncage = { mesh = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], faces = [[0, 1, 2]] } }\nscheme = \"sqrt3\"\nlevels = 4";
     LimitPassed: "The asset would have more triangles, vertices or bytes than [limits] or the machine's owner allows. Nothing was made: the count is known before memory is taken.",
         "[limits]\ntriangles = 100\n[shape.a.sphere]\nradius = 1" => "[shape.a]\nsegments = 8\n[shape.a.sphere]\nradius = 1\n[limits]\ntriangles = 200";
     NothingToShow: "A document needs a shape, and where it has nodes at least one of them must show one.",

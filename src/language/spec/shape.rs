@@ -31,6 +31,7 @@ use crate::language::spec::ruled::{Ruled, Translational};
 use crate::language::spec::schema::Schemas;
 use crate::language::spec::solid::{Cut, Hull, MinkowskiRound, Shell, SolidFormula, SolidSet};
 use crate::language::spec::spanned::Sp;
+use crate::language::spec::subdivide::Subdivide;
 use crate::language::spec::sweep::Sweep;
 use crate::language::spec::trimmed::Trimmed;
 use crate::language::spec::wire::Wire;
@@ -201,6 +202,8 @@ kinds! {
         MinkowskiRound(MinkowskiRound) = "minkowski-round";
         /// A solid hollowed out.
         Shell(Shell) = "shell";
+        /// A coarse shape made smooth.
+        Subdivide(Subdivide) = "subdivide";
     }
 }
 
