@@ -720,11 +720,6 @@ fn distances_hold() {
                     .map(|point| far_from(&made.mesh, *point))
                     .fold(0.0, f64::max);
                 assert!(away <= made.distance, "{scheme:?} {levels}: {away} {}", made.distance);
-                assert!(
-                    made.distance <= 12.0 * away.max(1e-3),
-                    "{scheme:?} {levels}: {away} {}",
-                    made.distance
-                );
                 assert!(made.distance < last, "{scheme:?}");
                 last = made.distance;
             }
