@@ -281,8 +281,8 @@ impl Cage {
         if let Some(charts) = self.charts {
             let (values, corners) = match (dual, on_limit) {
                 (true, _) => {
-                    let (topology, limit) = dual_limit(&charts);
-                    (limit.channels, topology.corner_vertex)
+                    let (topology, limit) = dual_limit(&flattened(&charts));
+                    (pairs(limit).channels, topology.corner_vertex)
                 }
                 (false, true) => (limit_of(&charts, options.scheme).channels, charts.topology.corner_vertex),
                 (false, false) => (charts.channels, charts.topology.corner_vertex),
@@ -314,23 +314,30 @@ fn sharpen_charts(charts: &mut Level, whole: &Topology, edges: &[f64], vertices:
 }
 
 fn limit_of(level: &Level, scheme: Scheme) -> Limit {
-    // Values of two numbers have no normals: a third makes them flat positions.
+    pairs(limit(&flattened(level), scheme))
+}
+
+/// Values of two numbers have no normals: a third makes them flat positions.
+fn flattened(level: &Level) -> Level {
     let channel = &level.channels[0];
     let values = (0..level.topology.vertices()).flat_map(|vertex| {
         let value = channel.value(vertex);
         [value[0], value[1], 0.0]
     });
-    let flat = Level {
+    Level {
         channels: vec![Channel { width: 3, values: values.collect() }],
         topology: level.topology.clone(),
         edge_sharpness: level.edge_sharpness.clone(),
         vertex_sharpness: level.vertex_sharpness.clone(),
         step: level.step,
-    };
-    let mut made = limit(&flat, scheme);
-    let values = made.channels[0].values.chunks_exact(3).flat_map(|value| [value[0], value[1]]).collect();
-    made.channels = vec![Channel { width: 2, values }];
-    made
+    }
+}
+
+/// The first two numbers of each flat position.
+fn pairs(mut limit: Limit) -> Limit {
+    let values = limit.channels[0].values.chunks_exact(3).flat_map(|value| [value[0], value[1]]).collect();
+    limit.channels = vec![Channel { width: 2, values }];
+    limit
 }
 
 /// For each face of the next level the face of the given mesh it comes from.

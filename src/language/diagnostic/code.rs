@@ -305,15 +305,6 @@ codes! {
     /// a shape has no flat face in a plane
     NoFaceThere = "K0899";
 
-    /// a cage cannot be refined
-    BadCage = "K0930";
-    /// a cage has no such edge or vertex
-    NoCageEdge = "K0931";
-    /// a scheme is one of triangles, and a cage has other faces
-    NeedsTriangles = "K0932";
-    /// a scheme refines borders in every second level
-    OddLevels = "K0933";
-
     /// a limit would be passed
     LimitPassed = "K0901";
     /// the result has nothing to show
@@ -337,6 +328,15 @@ codes! {
 
     /// this build of Kiln lacks a feature
     MissingFeature = "K0920";
+
+    /// a cage cannot be refined
+    BadCage = "K0930";
+    /// a cage has no such edge or vertex
+    NoCageEdge = "K0931";
+    /// a scheme is one of triangles, and a cage has other faces
+    NeedsTriangles = "K0932";
+    /// a scheme refines borders in every second level
+    OddLevels = "K0933";
 
     /// an assertion does not hold
     AssertionFailed = "K0951";
