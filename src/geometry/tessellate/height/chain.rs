@@ -97,7 +97,7 @@ impl Side {
     pub(super) fn chain(self, field: &GridField, tolerance: f64) -> Chain {
         let bend = self.most_bend(field);
         let parts = refinement(bend, tolerance);
-        let slack = bend / 8.0 / (parts * parts) as f64;
+        let slack = bend / 8.0 / (parts as f64 * parts as f64);
         self.split(field, parts, tolerance - slack, slack)
     }
 

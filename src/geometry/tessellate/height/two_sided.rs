@@ -52,11 +52,16 @@ pub fn two_sided(shape: &TwoSided, detail: &Detail, tolerance: f64) -> Result<Te
     let sides = [front, back];
     let border = sides.map(|side| border_tolerance(&side.field, aim, tolerance));
     let border = border[0].min(border[1]);
+    // Borders are cut about as finely as the lattices, which are allowed first.
+    let most = limit.saturating_mul(8);
+    let fine = [
+        Lattice::fine(&front.field, aim, 1, most).map_err(too_many)?,
+        Lattice::fine(&back.field, aim, 1, most).map_err(too_many)?,
+    ];
     let chains = merged(&sides, border);
     let grain = grain(front, tolerance);
     let mut lattices = Vec::new();
-    for side in sides {
-        let lattice = Lattice::fine(&side.field, aim, 1, limit.saturating_mul(8)).map_err(too_many)?;
+    for lattice in fine {
         lattices.push(lattice.holding(&chains, grain).map_err(too_many)?);
     }
     let finest = lattices.iter().map(Lattice::parts).fold(grain, u64::max);
