@@ -30,7 +30,7 @@ pub(super) fn position(channel: &Channel, vertex: u32) -> DVec3 {
 }
 
 /// The limit of a level whose faces are those of the scheme: quads for Catmull-Clark, so at least one step has been made.
-/// Not for the schemes that cut corners; see [`dual_limit`](super::dual_limit). O(n).
+/// Not for the schemes that cut corners; see [`dual_limit`](super::dual_limit()). O(n).
 #[must_use]
 pub fn limit(level: &Level, scheme: Scheme) -> Limit {
     let mut made = Limit {

@@ -1,11 +1,11 @@
 //! Subdivision surfaces: a cage of polygons refined step by step toward its smooth limit.
 //!
-//! A scheme is its masks and the way it splits faces; one engine ([`mask`]) applies the masks to all that the vertices carry.
+//! A scheme is its masks and the way it splits faces; one engine (`mask`) applies the masks to all that the vertices carry.
 //! Promise: what is closed stays closed and keeps its Euler characteristic; limit positions and normals are those of the
 //! published limit masks; time and memory are linear in the faces that are made; the same bytes everywhere. Not promised:
 //! that the surface does not cross itself, and distances from the limit are sampled, not proved. Sources stand with the
-//! masks: [`primal`] (Catmull-Clark, Loop), [`root3`], [`corner_cut`] (Doo-Sabin, mid-edge), [`butterfly`],
-//! [`sharpness`] (creases), [`local`] and [`dual_limit`] (limits).
+//! masks: `primal` (Catmull-Clark, Loop), `root3`, `corner_cut` (Doo-Sabin, mid-edge), `butterfly`,
+//! `sharpness` (creases), `local` and `dual_limit` (limits).
 
 mod butterfly;
 mod chart;
