@@ -27,16 +27,12 @@ pub(super) fn edge_profile(extrude: &Extrude, bottom: f64) -> Option<EdgeProfile
     let leaned = tan_degrees(draft) * (shoulder - whole).max(0.0);
     let at = |inset: f64, z: f64| DVec3::new(inset, z, 0.0);
     let wall = (shoulder > whole).then(|| line(at(0.0, whole), at(leaned, shoulder))).flatten();
-    let cut = above.and_then(|bevel| cut(bevel, at(leaned, shoulder), 1.0));
-    let upper = Path::new(wall.into_iter().chain(cut).collect())?;
+    let end = above.and_then(|bevel| cut(bevel, at(leaned, shoulder), 1.0));
+    let upper = Path::new(wall.into_iter().chain(end).collect())?;
     Some(EdgeProfile {
-        lower: below.and_then(|bevel| cut_of(bevel, at(0.0, whole))),
+        lower: below.and_then(|bevel| cut(bevel, at(0.0, whole), -1.0)),
         upper: AnyCurve::Path(upper),
     })
-}
-
-fn cut_of(bevel: &Bevel, from: DVec3) -> Option<AnyCurve> {
-    cut(bevel, from, -1.0)
 }
 
 /// The profile of a bevel from the wall inward, up or down.

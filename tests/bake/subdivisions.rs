@@ -49,5 +49,17 @@ fn texture_coordinates_are_carried() {
         "[shape.a]\nuv = \"always\"\n[shape.a.subdivide]\nborder = \"corners\"\nlevels = 3\ncage = { mesh = { points = [[0, 0, 0], [1, 0, 0], [1, 0, -1], [0, 0, -1]], faces = [[0, 1, 2, 3]], uvs = [[0, 0], [1, 0], [1, 1], [0, 1]] } }",
     );
     let primitive = &baked.glb.json["meshes"][0]["primitives"][0];
-    assert!(!primitive["attributes"]["TEXCOORD_0"].is_null(), "{primitive}");
+    let values = |name: &str| {
+        let accessor =
+            primitive["attributes"][name].as_u64().unwrap_or_else(|| panic!("{name}: {primitive}"));
+        baked.glb.accessor(usize::try_from(accessor).expect("small"))
+    };
+    let (places, charts) = (values("POSITION"), values("TEXCOORD_0"));
+    assert!(places.len() >= 81 && places.len() == charts.len());
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-6;
+    assert!(places.iter().zip(&charts).all(|(place, chart)| near(place[0], chart[0])), "{charts:?}");
+    // Written coordinates count up from the lower edge, those of a file down from the upper one.
+    let v =
+        |of: fn(f64) -> f64| places.iter().zip(&charts).all(|(place, chart)| near(of(place[2]), chart[1]));
+    assert!(v(|z| -z) || v(|z| 1.0 + z), "{charts:?}");
 }
