@@ -8,6 +8,16 @@ use crate::geometry::curve::Side;
 /// Tangents shorter than this share of what second derivatives make of them are zero but for rounding.
 const VANISHES: f64 = 1e-9;
 
+/// The unit normal by tangents that surely do not vanish, given that the sum of the squares of the second derivatives is
+/// no greater than `second`; then it is what [`normal`] gives.
+pub(super) fn plain_normal((du, dv): (DVec3, DVec3), second: f64) -> Option<DVec3> {
+    // The squares settle almost every place, without a root.
+    let (least, across) = (12.0 * VANISHES * VANISHES * second, du.cross(dv));
+    let (square_u, square_v) = (du.length_squared(), dv.length_squared());
+    let spread = across.length_squared() > VANISHES * VANISHES * square_u * square_v;
+    if square_u > least && square_v > least && spread { across.try_normalize() } else { None }
+}
+
 /// The unit normal by the tangents at a place; where one vanishes (a pole, a cusp) by its change into the
 /// surface: there it points, but for its length, where it points near by. All derivatives by parameters from
 /// 0 to 1 or the like; `None` where even these do not span a plane.
@@ -16,13 +26,9 @@ pub(super) fn normal(
     second: &SecondJet,
     (side_u, side_v): (Side, Side),
 ) -> Option<DVec3> {
-    // The squares settle almost every place, without a root.
-    let reach = 3.0 * (second.uu.length_squared() + second.uv.length_squared() + second.vv.length_squared());
-    let (least, across) = (4.0 * VANISHES * VANISHES * reach, du.cross(dv));
-    let (square_u, square_v) = (du.length_squared(), dv.length_squared());
-    let spread = across.length_squared() > VANISHES * VANISHES * square_u * square_v;
-    if square_u > least && square_v > least && spread {
-        return across.try_normalize();
+    let squares = second.uu.length_squared() + second.uv.length_squared() + second.vv.length_squared();
+    if let Some(plain) = plain_normal((du, dv), squares) {
+        return Some(plain);
     }
     let into = |side: Side, change: DVec3| if side == Side::After { change } else { -change };
     let reach = second.uu.length() + second.uv.length() + second.vv.length();

@@ -111,25 +111,40 @@ impl LoftedSurface {
         weights
     }
 
-    /// The jet, but for its normal, and the second derivatives by the weights of curves whose jets are given.
-    fn weighted(weights: &[(usize, [f64; 3])], curve: impl Fn(usize) -> Jet) -> (SurfaceJet, SecondJet) {
+    /// The jet, but for its normal, by the weights of curves whose jets are given.
+    fn weighted<'a>(weights: &[(usize, [f64; 3])], curve: impl Fn(usize) -> &'a Jet) -> SurfaceJet {
         let zero = DVec3::ZERO;
         let mut jet = SurfaceJet { point: zero, du: zero, dv: zero, normal: DVec3::Y };
-        let mut second = SecondJet { uu: zero, uv: zero, vv: zero };
-        for (k, [w, w1, w2]) in weights {
+        for (k, [w, w1, _]) in weights {
             let curve = curve(*k);
             jet.point += curve.point * *w;
             jet.du += curve.first * *w;
             jet.dv += curve.point * *w1;
+        }
+        jet
+    }
+
+    /// The second derivatives, likewise.
+    fn weighted_second<'a>(weights: &[(usize, [f64; 3])], curve: impl Fn(usize) -> &'a Jet) -> SecondJet {
+        let zero = DVec3::ZERO;
+        let mut second = SecondJet { uu: zero, uv: zero, vv: zero };
+        for (k, [w, w1, w2]) in weights {
+            let curve = curve(*k);
             second.uu += curve.second * *w;
             second.uv += curve.first * *w1;
             second.vv += curve.point * *w2;
         }
-        (jet, second)
+        second
     }
 
-    fn both(&self, u: (f64, Side), v: (f64, Side)) -> (SurfaceJet, SecondJet) {
-        Self::weighted(&self.weights(v), |k| self.curves[k].evaluate(u.0, u.1))
+    /// Weights at v and the jets of all curves at u; of curves that do not count, zeros.
+    fn at(&self, u: (f64, Side), v: (f64, Side)) -> (Vec<(usize, [f64; 3])>, Vec<Jet>) {
+        let weights = self.weights(v);
+        let mut jets = vec![UNKNOWN; self.curves.len()];
+        for (k, _) in &weights {
+            jets[*k] = self.curves[*k].evaluate(u.0, u.1);
+        }
+        (weights, jets)
     }
 
     fn with_normal(
@@ -179,6 +194,28 @@ impl LoftedSurface {
         }
         Piece::new(step, weights)
     }
+}
+
+/// The jet of a curve that does not count.
+const UNKNOWN: Jet = Jet { point: DVec3::ZERO, first: DVec3::ZERO, second: DVec3::ZERO };
+
+/// Greatest lengths of points, first and second derivatives.
+fn most_of_all(jets: &[Jet]) -> [f64; 3] {
+    let mut most = [0.0_f64; 3];
+    for jet in jets {
+        for (most, vector) in most.iter_mut().zip([jet.point, jet.first, jet.second]) {
+            *most = most.max(vector.length_squared());
+        }
+    }
+    most.map(f64::sqrt)
+}
+
+/// No sum of squares of second derivatives, by v over 0 to 1, is greater for these weights.
+fn most_of_second(weights: &[(usize, [f64; 3])], [point, first, second]: &[f64; 3], span: f64) -> f64 {
+    let sum = |k: usize| weights.iter().map(|(_, weight)| weight[k].abs()).sum::<f64>();
+    let (uu, uv, vv) = (sum(0) * second, sum(1) * first * span, sum(2) * point * (span * span));
+    // Sums round.
+    (uu * uu + uv * uv + vv * vv) * (1.0 + 1e-9)
 }
 
 /// Curves whose weights matter at one place, however many there are.
@@ -275,11 +312,14 @@ impl Surface for LoftedSurface {
     }
 
     fn sided(&self, u: (f64, Side), v: (f64, Side)) -> SurfaceJet {
-        self.with_normal(self.both(u, v), u, v)
+        let (weights, jets) = self.at(u, v);
+        let jet = Self::weighted(&weights, |k| &jets[k]);
+        self.with_normal((jet, Self::weighted_second(&weights, |k| &jets[k])), u, v)
     }
 
     fn second(&self, u: (f64, Side), v: (f64, Side)) -> SecondJet {
-        self.both(u, v).1
+        let (weights, jets) = self.at(u, v);
+        Self::weighted_second(&weights, |k| &jets[k])
     }
 
     fn second_range(&self, u: (f64, f64), v: (f64, f64)) -> Option<SecondRange> {
@@ -289,16 +329,29 @@ impl Surface for LoftedSurface {
     fn lattice(&self, u: &[(f64, Side)], v: &[(f64, Side)]) -> Vec<SurfaceJet> {
         let rows: Vec<Vec<(usize, [f64; 3])>> = v.iter().map(|v| self.weights(*v)).collect();
         let matter = self.which(rows.iter().flatten().map(|(k, _)| *k));
-        let unknown = Jet { point: DVec3::ZERO, first: DVec3::ZERO, second: DVec3::ZERO };
-        let at = |(u, side): (f64, Side)| {
+        let count = self.curves.len();
+        let mut jets = Vec::with_capacity(u.len() * count);
+        for (u, side) in u {
             let curves = self.curves.iter().zip(&matter);
-            curves.map(move |(curve, matters)| if *matters { curve.evaluate(u, side) } else { unknown })
-        };
-        let jets: Vec<Jet> = u.iter().flat_map(|u| at(*u)).collect();
+            jets.extend(
+                curves.map(|(curve, matters)| if *matters { curve.evaluate(*u, *side) } else { UNKNOWN }),
+            );
+        }
+        // Where the tangents are far greater than all that second derivatives can be, these need not be known.
+        let most = most_of_all(&jets);
+        let span = self.domain_v().span();
         let mut places = Vec::with_capacity(u.len() * v.len());
         for (weights, v) in rows.iter().zip(v) {
-            for (jets, u) in jets.chunks(self.curves.len()).zip(u) {
-                places.push(self.with_normal(Self::weighted(weights, |k| jets[k]), *u, *v));
+            let second = most_of_second(weights, &most, span);
+            for (jets, u) in jets.chunks(count).zip(u) {
+                let mut jet = Self::weighted(weights, |k| &jets[k]);
+                places.push(match limit::plain_normal((jet.du, jet.dv * span), second) {
+                    Some(normal) => {
+                        jet.normal = normal;
+                        jet
+                    }
+                    None => self.with_normal((jet, Self::weighted_second(weights, |k| &jets[k])), *u, *v),
+                });
             }
         }
         places

@@ -1,5 +1,7 @@
 //! Vertices, normals, texture coordinates and flat ends: from a net to a mesh.
 
+use std::collections::BTreeMap;
+
 use glam::{DVec2, DVec3};
 
 use super::Patchwork;
@@ -72,6 +74,7 @@ impl<'a, 'b> Assembly<'a, 'b> {
 
     /// Corners on the two sides of a smooth edge get one normal.
     fn join_smooth_edges(&mut self) {
+        let mut joined = Vec::new();
         for (number, edge) in self.net.layout.edges.iter().enumerate() {
             let [one, other] = edge.uses.as_slice() else { continue };
             if edge.pole || self.net.turns[number] > self.detail.crease_angle {
@@ -80,22 +83,25 @@ impl<'a, 'b> Assembly<'a, 'b> {
             let (one, other) = (self.chain(*one), self.chain(*other));
             for ((a, point), (b, same)) in one.into_iter().zip(other) {
                 if point == same {
+                    joined.extend([a, b]);
                     let (a, b) = (self.root(a), self.root(b));
                     self.parent[a.max(b) as usize] = a.min(b);
                 }
             }
         }
-        let mut sums = vec![DVec3::ZERO; self.normals.len()];
-        for corner in 0..index(self.normals.len()) {
-            sums[self.root(corner) as usize] += self.normals[corner as usize];
+        // Few corners stand on edges; the rest keep what they have.
+        joined.sort_unstable();
+        joined.dedup();
+        let mut sums: BTreeMap<u32, DVec3> = BTreeMap::new();
+        for corner in &joined {
+            *sums.entry(self.root(*corner)).or_default() += self.normals[*corner as usize];
         }
-        for corner in 0..index(self.normals.len()) {
-            let root = self.root(corner);
-            let own = self.normals[corner as usize];
+        for corner in joined {
+            let (sum, own) = (sums[&self.root(corner)], &mut self.normals[corner as usize]);
             // Along a seam with a twist normals are opposite, and their sum is rounding.
-            let sum = sums[root as usize];
-            self.normals[corner as usize] =
-                if sum == own || sum.length() < OPPOSITE { own } else { sum.normalize() };
+            if sum != *own && sum.length() >= OPPOSITE {
+                *own = sum.normalize();
+            }
         }
     }
 
@@ -113,7 +119,10 @@ impl<'a, 'b> Assembly<'a, 'b> {
     }
 
     fn triangles(&mut self) {
-        let mut made = Made { newest: vec![NONE; self.net.points.len()], older: Vec::new() };
+        let corners = self.net.pieces.iter().map(|piece| piece.corners.len()).sum();
+        self.mesh.vertices.reserve(corners);
+        let newest = vec![NONE; self.net.points.len()];
+        let mut made = Made { newest, older: Vec::with_capacity(corners) };
         for (number, (block, piece)) in self.net.layout.blocks.iter().zip(&self.net.pieces).enumerate() {
             let mut vertices = vec![NONE; piece.corners.len()];
             self.mesh.triangles.reserve(piece.triangles.len());

@@ -75,6 +75,8 @@ impl Lattice {
     pub(super) fn piece(&self, block: &Block<'_>, rims: &[Cut; 4], points: &mut Vec<DVec3>) -> Piece {
         let jets = block.lattice(&self.u, &self.v);
         let mut piece = Piece { normals: jets.iter().map(|jet| jet.normal).collect(), ..Piece::default() };
+        points.reserve(jets.len());
+        piece.corners.reserve(jets.len());
         let mut jet = jets.iter();
         let [bottom, right, top, left] = rims;
         for (row, v) in self.v.iter().enumerate() {
