@@ -170,6 +170,24 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
         RealizeError::Tessellate(TessellateError::NoArea) => {
             (Code::NoArea, "a finer `tolerance` or more `segments` keep the outline open")
         }
+        RealizeError::Tessellate(TessellateError::NoSurface) => {
+            (Code::NoFieldSurface, "move `within` to where the surface lies, or change the level")
+        }
+        RealizeError::Tessellate(TessellateError::NoValue { .. }) => {
+            (Code::FormulaValue, "let `within` leave that place out, or say with `if` what holds there")
+        }
+        RealizeError::Tessellate(TessellateError::LeavesBox { .. }) => (
+            Code::LeavesBox,
+            "make `within` larger, or cut the field off by an `intersection` with a body inside of it",
+        ),
+        RealizeError::Tessellate(TessellateError::Unsound { .. }) => (
+            Code::UnsoundSurface,
+            "let its parts overlap or lie apart, or join them with a `blend`; a finer `tolerance` tells more apart",
+        ),
+        RealizeError::Tessellate(TessellateError::TooMuchWork) => (
+            Code::TooMuchWork,
+            "write a coarser `tolerance` or `search`, a smaller `within`, or a field of fewer parts",
+        ),
         RealizeError::Tessellate(TessellateError::BelowBase { .. }) => {
             (Code::BelowBase, "write a lower `base`, or raise the heights with `range`")
         }

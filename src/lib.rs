@@ -17,9 +17,9 @@
 //! | `geometry::solid` | `geometry::number`, `geometry::mesh` |
 //! | `geometry::subdivide` | `geometry::number`, `geometry::mesh` |
 //! | `geometry::surface` | `geometry::number`, `geometry::formula`, `geometry::curve` |
-//! | `geometry::field` | `geometry::number` |
+//! | `geometry::field` | `geometry::number`, `geometry::formula`, `geometry::curve`, `geometry::mesh` |
 //! | `geometry::map` | `geometry::number` |
-//! | `geometry::tessellate` | `geometry::number`, `geometry::planar`, `geometry::curve`, `geometry::mesh`, `geometry::surface`, `geometry::field`, `geometry::map` |
+//! | `geometry::tessellate` | `geometry::number`, `geometry::formula`, `geometry::planar`, `geometry::curve`, `geometry::mesh`, `geometry::surface`, `geometry::field`, `geometry::map` |
 //! | `geometry::profile` | `geometry::number`, `geometry::planar`, `geometry::curve`, `geometry::tessellate` |
 //! | `import` | `geometry::number`, `geometry::mesh` |
 //! | `model` | `geometry` |

@@ -9,6 +9,7 @@ mod deformations;
 mod determinism;
 mod document;
 mod drawings;
+mod fields;
 mod glb;
 mod heights;
 mod hostile;

@@ -13,6 +13,7 @@ mod coons;
 mod curve;
 mod deform;
 mod extrude;
+mod field;
 mod formula;
 mod formula_curve;
 mod height;
@@ -52,6 +53,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use indexmap::IndexMap;
 
 use crate::geometry::curve::AnyCurve;
+use crate::geometry::field::AnyField;
 use crate::geometry::map::GridField;
 use crate::language::diagnostic::{Diagnostic, Severity};
 use crate::language::source::{Files, Span};
@@ -110,6 +112,7 @@ struct Builder<'a> {
     images: IndexMap<String, Option<ImageHandle>>,
     curves: IndexMap<String, Option<Vec<AnyCurve>>>,
     maps: IndexMap<String, Option<Arc<GridField>>>,
+    fields: IndexMap<String, Option<AnyField>>,
     /// The definition that is being built, and whether what is built now only stands inside it.
     within: Option<(String, bool)>,
 }
@@ -145,6 +148,7 @@ impl<'a> Builder<'a> {
             images: IndexMap::new(),
             curves: IndexMap::new(),
             maps: IndexMap::new(),
+            fields: IndexMap::new(),
             within: None,
         }
     }
@@ -160,6 +164,9 @@ impl<'a> Builder<'a> {
         }
         for name in spec.maps.keys() {
             self.named_map(name);
+        }
+        for name in spec.fields.keys() {
+            self.named_field(name);
         }
         for name in spec.shapes.keys() {
             self.named_shape(name);

@@ -124,6 +124,7 @@ impl Builder<'_> {
                 let both = self.shows_both_sides(&definition.options);
                 self.parametric(surface, span, both).map(here)
             }
+            Kind::Implicit(surface) => self.implicit_shape(surface, span).map(here),
             Kind::Mesh(mesh) => self.mesh(mesh, span).map(here),
             Kind::Import(import) => self.import(import, span).map(here),
             Kind::Taper(taper) => self.taper(name, taper).map(here),

@@ -6,8 +6,8 @@ use super::{Bending, MaterialHandle, SolidRecipe, SubdivisionRecipe};
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::tessellate::{
-    ClippedQuadric, Extrusion, FlatPlane, Geodesic, HeightMap, Patchwork, Revolution, RoundedBox, Sheet,
-    Sweep, TrimmedSurface, TwoSided,
+    ClippedQuadric, Extrusion, FieldSurface, FlatPlane, Geodesic, HeightMap, Patchwork, Revolution,
+    RoundedBox, Sheet, Sweep, TrimmedSurface, TwoSided,
 };
 
 /// Index of a shape in its model.
@@ -59,6 +59,13 @@ pub enum Recipe {
     Wire(Vec<AnyCurve>),
     /// A surface of the second degree, cut off.
     Quadric(ClippedQuadric),
+    /// Where a field is zero.
+    Implicit {
+        /// The surface.
+        surface: Box<FieldSurface>,
+        /// For each element of its skeleton the material; none where no element has one.
+        materials: Vec<Option<MaterialHandle>>,
+    },
     /// A part of a surface inside lines of its parameters.
     Trimmed(TrimmedSurface),
     /// Polygons, written out or imported. For each of their materials the model's, if it has one.

@@ -42,7 +42,7 @@ pub(super) fn cloud(recipe: &Recipe) -> Vec<DVec3> {
         Recipe::Patches(patches) => patches.surfaces.iter().flat_map(lattice).collect(),
         Recipe::Trimmed(shape) => trimmed(shape),
         // No further than its box, and hardly less.
-        Recipe::Quadric(_) | Recipe::Height(_) | Recipe::TwoSided(_) => {
+        Recipe::Quadric(_) | Recipe::Height(_) | Recipe::TwoSided(_) | Recipe::Implicit { .. } => {
             let bounds = extent(recipe);
             let half = (bounds.max - bounds.min) / 2.0;
             faces(half).into_iter().map(|place| place + bounds.center()).collect()

@@ -6,14 +6,15 @@ use super::limit::{self, Cost};
 use super::reach::bent;
 use super::source::{Extents, source_count};
 use super::{Faces, Note, Options, RealizeError};
+use crate::geometry::field::AnyField;
 use crate::geometry::mesh;
 use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
 use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex, Wire};
 use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::{
     DeformError, Deformed, Detail, Deviation, HeightBound, SurfaceDensity, TessellateError, Tessellation,
-    cuboid, deform, extrude, geodesic, height_map, patchwork, plane, quadric, revolve, rounded_box, sheet,
-    sweep, trimmed, two_sided, wire,
+    cuboid, deform, extrude, field_surface, geodesic, height_map, patchwork, plane, quadric, revolve,
+    rounded_box, sheet, sweep, trimmed, two_sided, wire,
 };
 use crate::model::{Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing, UvMode};
 
@@ -180,6 +181,14 @@ impl<'a> Maker<'a> {
             Recipe::Sheet(face) => sheet(face, &detail),
             Recipe::Quadric(shape) => quadric(shape, &detail),
             Recipe::Trimmed(shape) => trimmed(shape, &detail),
+            Recipe::Implicit { surface: field, materials } => {
+                let made = field_surface(field, &detail).map_err(|error| self.in_terms_of_limits(error))?;
+                let mut made = surface(made);
+                if !materials.is_empty() {
+                    split_by_element(&mut made, &field.field, materials);
+                }
+                return self.finished(shape, made);
+            }
             Recipe::Height(map) => height_map(map, &detail, tolerance / stretch),
             Recipe::TwoSided(body) => two_sided(body, &detail, tolerance / stretch),
             Recipe::Polygons { mesh, materials } => {
@@ -339,6 +348,27 @@ impl<'a> Maker<'a> {
         }
         Ok(whole)
     }
+}
+
+/// Gives each triangle the material of the element that is the strongest in its middle.
+fn split_by_element(made: &mut Made, field: &AnyField, materials: &[Option<MaterialHandle>]) {
+    let mesh = &mut made.mesh;
+    let middle = |corners: &[VertexIndex; 3]| {
+        let places = corners.map(|corner| mesh.points[mesh.vertices[corner.subscript()].point.subscript()]);
+        (places[0] + places[1] + places[2]) / 3.0
+    };
+    let of = |corners: &[VertexIndex; 3]| field.strongest(middle(corners)).unwrap_or(0);
+    let mut all: Vec<(usize, [VertexIndex; 3])> =
+        mesh.triangles.iter().map(|corners| (of(corners), *corners)).collect();
+    all.sort_by_key(|(element, _)| *element);
+    mesh.triangles = all.iter().map(|(_, corners)| *corners).collect();
+    mesh.runs.clear();
+    for (place, (element, _)) in all.iter().enumerate() {
+        if all.get(place + 1).is_none_or(|(next, _)| next != element) {
+            mesh.runs.push(Run { origin: mesh::index(*element), end: mesh::index(place + 1) });
+        }
+    }
+    made.materials = materials.to_vec();
 }
 
 /// Whether the document fixes how finely a shape is cut.

@@ -17,7 +17,7 @@ use crate::geometry::number::{Bounds, hypot};
 use crate::geometry::subdivide::Scheme;
 use crate::geometry::surface::{AnySurface, Deformation, Surface as _, SweptWall};
 use crate::geometry::tessellate::{
-    ClippedQuadric, Closing, DeformError, Density, HeightMap, RoundedBox, Route, discretize,
+    ClippedQuadric, Closing, DeformError, Density, FieldSurface, HeightMap, RoundedBox, Route, discretize,
 };
 use crate::model::{KeptSide, Model, Recipe, ShapeHandle, SolidOperation, SolidRecipe};
 
@@ -32,6 +32,7 @@ pub(super) fn source_count(recipe: &Recipe) -> u32 {
         Recipe::Patches(patches) => mesh::index(patches.surfaces.len() + patches.caps.len()),
         Recipe::Polygons { .. }
         | Recipe::Trimmed(_)
+        | Recipe::Implicit { .. }
         | Recipe::RoundedBox(_)
         | Recipe::Geodesic(_)
         | Recipe::Plane(_)
@@ -72,6 +73,8 @@ enum Kind {
     Quadric(Quadric),
     /// A surface that follows from others and has no form of its own: that of a hull, of a rounded shape, of a hollow.
     Derived,
+    /// Where a field is zero.
+    Implicit(Arc<FieldSurface>),
 }
 
 /// All surfaces of a shape, by the source of an anchor.
@@ -253,6 +256,7 @@ fn kinds(recipe: &Recipe, bends: bool) -> Vec<Kind> {
             let kind = |source| shape.surface(source).map_or_else(|| flat(source), Kind::Quadric);
             (0..ClippedQuadric::SOURCES).map(kind).collect()
         }
+        Recipe::Implicit { surface, .. } => vec![Kind::Implicit(Arc::new(surface.as_ref().clone()))],
         Recipe::Wire(curves) => curves.iter().map(|curve| Kind::Line(curve.clone())).collect(),
         Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) | Recipe::Subdivided(_) => {
             Vec::new()
@@ -392,6 +396,7 @@ impl Source {
             Kind::Patch(surface) => surface.distance(local, window),
             Kind::Height(map, lift) => super::height::distance(map, local - DVec3::Y * *lift),
             Kind::Line(curve) => distance_near(curve, local, window.u),
+            Kind::Implicit(surface) => surface.distance(local),
             Kind::Quadric(quadric) => {
                 quadric.settled(local).map_or(f64::INFINITY, |nearest| nearest.distance(local))
             }
@@ -538,6 +543,7 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
         Recipe::Patches(patches) => patches.surfaces.iter().map(lattice).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Wire(curves) => curves.iter().map(along).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Quadric(shape) => shape.bounds(),
+        Recipe::Implicit { surface, .. } => surface.within,
         Recipe::Trimmed(shape) => shape.bounds(),
         Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) | Recipe::Subdivided(_) => {
             Bounds::EMPTY

@@ -103,17 +103,20 @@ pub trait Algebra: Copy {
 }
 
 /// Sum.
-pub(super) fn plus<T: Algebra>(x: T, y: T) -> T {
+#[must_use]
+pub fn plus<T: Algebra>(x: T, y: T) -> T {
     T::binary(Binary::Add, x, y)
 }
 
 /// Difference.
-pub(super) fn minus<T: Algebra>(x: T, y: T) -> T {
+#[must_use]
+pub fn minus<T: Algebra>(x: T, y: T) -> T {
     T::binary(Binary::Subtract, x, y)
 }
 
 /// Product.
-pub(super) fn times<T: Algebra>(x: T, y: T) -> T {
+#[must_use]
+pub fn times<T: Algebra>(x: T, y: T) -> T {
     T::binary(Binary::Multiply, x, y)
 }
 

@@ -20,7 +20,7 @@ mod program;
 mod tests;
 mod trace;
 
-pub use algebra::{Algebra, Binary, Unary};
+pub use algebra::{Algebra, Binary, Unary, minus, plus, times};
 pub use interval::{Interval, Quality};
 pub use jet::{Decide, Jet};
 pub use noise::Cells;

@@ -10,6 +10,7 @@
 //! or free of self-intersections; [`topology`] measures the first on any index buffer.
 
 pub mod convert;
+pub mod crossing;
 mod normals;
 pub mod platonic;
 pub mod polygon;

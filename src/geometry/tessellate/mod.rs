@@ -12,6 +12,7 @@ mod cuboid;
 mod deform;
 mod discretize;
 mod extrude;
+mod field;
 mod geodesic;
 mod height;
 mod patch;
@@ -34,6 +35,7 @@ pub use cuboid::cuboid;
 pub use deform::{DeformError, Deformed, deform};
 pub use discretize::{Density, Station, arc_lengths, discretize};
 pub use extrude::{Extrusion, extrude};
+pub use field::{FieldSurface, field_surface};
 pub use geodesic::{Geodesic, geodesic};
 pub use height::{Closing, HeightBound, HeightMap, Mask, MaskSide, TwoSided, height_map, two_sided};
 pub use patch::{Patchwork, Rim, patchwork};
@@ -46,7 +48,7 @@ pub use sweep::{Route, Sweep, sweep};
 pub use trimmed::{TrimmedSurface, trimmed};
 pub use wire::wire;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use thiserror::Error;
 
 use super::mesh::Mesh;
@@ -176,4 +178,36 @@ pub enum TessellateError {
     /// The outline encloses no area.
     #[error("the outline encloses no area")]
     NoArea,
+    /// A field that is nowhere 0 in its box.
+    #[error("the field has no surface in its box")]
+    NoSurface,
+    /// A field that has no value somewhere in its box.
+    #[error("the field has no value at [{}, {}, {}]", place.x, place.y, place.z)]
+    NoValue {
+        /// Where.
+        place: DVec3,
+    },
+    /// A surface that reaches the box in which it is searched.
+    #[error("the surface leaves its box at [{}, {}, {}]", place.x, place.y, place.z)]
+    LeavesBox {
+        /// A place near the box where it does.
+        place: DVec3,
+    },
+    /// A surface whose triangles do not become sound, as where it touches itself.
+    #[error(
+        "near [{}, {}, {}] its triangles {}",
+        crate::geometry::number::single(place.x),
+        crate::geometry::number::single(place.y),
+        crate::geometry::number::single(place.z),
+        if *crossing { "cross each other" } else { "stay further from it than the tolerance" }
+    )]
+    Unsound {
+        /// Where.
+        place: DVec3,
+        /// Whether triangles cross; otherwise they are too far off.
+        crossing: bool,
+    },
+    /// A field whose surface would take too long to find.
+    #[error("to find its surface takes too many steps")]
+    TooMuchWork,
 }

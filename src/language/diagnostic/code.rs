@@ -337,6 +337,18 @@ codes! {
     NeedsTriangles = "K0932";
     /// a scheme refines borders in every second level
     OddLevels = "K0933";
+    /// a field has no surface in its box
+    NoFieldSurface = "K0940";
+    /// a surface leaves the box in which it is searched
+    LeavesBox = "K0941";
+    /// a field needs a box
+    NeedsBox = "K0942";
+    /// an element of a skeleton is nothing, or two things
+    NoElement = "K0943";
+    /// no sound triangles are found for the surface of a field
+    UnsoundSurface = "K0944";
+    /// the surface of a field takes too long to find
+    TooMuchWork = "K0945";
 
     /// an assertion does not hold
     AssertionFailed = "K0951";

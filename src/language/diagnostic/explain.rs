@@ -390,6 +390,24 @@ examples! {
     OddLevels: "The sqrt(3) scheme cuts the edges of a border in three in every second level; after an odd number the border stands between two steps.",
         "[shape.a.subdivide]\ncage = { mesh = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], faces = [[0, 1, 2]] } }\nscheme = \"sqrt3\"\nlevels = 3" =>
         "[shape.a.subdivide]\ncage = { mesh = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], faces = [[0, 1, 2]] } }\nscheme = \"sqrt3\"\nlevels = 4";
+    NoFieldSurface: "A field has a surface where its value is the level: here it stays on one side of it everywhere in the box. The box may lie beside the body, the level may be too high, or the potentials too weak to reach it.",
+        "[shape.a.implicit]\nfield = { formula = { f = \"= x^2 + y^2 + z^2 + 1\" } }\nwithin = { min = [-2, -2, -2], max = [2, 2, 2] }" =>
+        "[shape.a.implicit]\nfield = { formula = { f = \"= x^2 + y^2 + z^2 - 1\" } }\nwithin = { min = [-2, -2, -2], max = [2, 2, 2] }";
+    LeavesBox: "The surface reaches the sides of its box, where it would be open. A larger box may hold it; what has no end is cut off by an intersection with a body, such as a box or a ball.",
+        "[shape.a.implicit]\nfield = { formula = { f = \"= x^2 + y^2 + z^2 - 1\" } }\nwithin = { min = [-1, -1, -1], max = [1, 1, 0.5] }" =>
+        "[shape.a.implicit]\nfield = { formula = { f = \"= x^2 + y^2 + z^2 - 1\" } }\nwithin = { min = [-1, -1, -1], max = [1, 1, 1.2] }";
+    NeedsBox: "Of bodies, skeletons and what is joined of them a box is known that holds the surface. Of formulas, sums and half spaces none is: `within` says where to look.",
+        "[shape.a.implicit]\nfield = { formula = { f = \"= x^2 + y^2 + z^2 - 1\" } }" =>
+        "[shape.a.implicit]\nfield = { formula = { f = \"= x^2 + y^2 + z^2 - 1\" } }\nwithin = { min = [-2, -2, -2], max = [2, 2, 2] }";
+    NoElement: "An element of a skeleton is one thing: a `point`, a `segment` of two points, a flat `polygon`, or a `curve`.",
+        "[field.a.skeleton]\nelements = [{ radius = 1 }]\n[shape.a.implicit]\nfield = \"a\"" =>
+        "[field.a.skeleton]\nelements = [{ point = [0, 0, 0], radius = 1 }]\n[shape.a.implicit]\nfield = \"a\"";
+    UnsoundSurface: "Triangles must not cross, and must be near enough to the surface. Where parts of it touch or cross each other there are none; and edges that are very blunt, or corners in which more than three edges meet, are not always found. Bodies that overlap or lie apart have a sound surface, as a union with a `blend` has.",
+        "" =>
+        "[shape.a.implicit]\nfield = { union = { of = [{ sphere = { radius = 1 } }, { sphere = { radius = 1, center = [2, 0, 0] } }], blend = 0.3 } }";
+    TooMuchWork: "A field is searched in cells, and asked at many places. Where bounds on it say nothing until cells are very small, or it has very many parts, this would not end soon. The usual reasons are a field that touches 0 without a change of sign, a small `search`, a box much larger than the body, a fine `tolerance`.",
+        "[shape.a.implicit]\nfield = { formula = { f = \"= (x^2 + y^2 + z^2 - 1)^2\" } }\nwithin = { min = [-2, -2, -2], max = [2, 2, 2] }" =>
+        "[shape.a.implicit]\nfield = { formula = { f = \"= x^2 + y^2 + z^2 - 1\" } }\nwithin = { min = [-2, -2, -2], max = [2, 2, 2] }";
     LimitPassed: "The asset would have more triangles, vertices or bytes than [limits] or the machine's owner allows. Nothing was made: the count is known before memory is taken.",
         "[limits]\ntriangles = 100\n[shape.a.sphere]\nradius = 1" => "[shape.a]\nsegments = 8\n[shape.a.sphere]\nradius = 1\n[limits]\ntriangles = 200";
     NothingToShow: "A document needs a shape, and where it has nodes at least one of them must show one.",

@@ -6,6 +6,7 @@ use crate::language::source::Span;
 use crate::language::spec::assertion::Assertion;
 use crate::language::spec::construct::{choices, table};
 use crate::language::spec::curve::Curve;
+use crate::language::spec::field::FieldDefinition;
 use crate::language::spec::import::Up;
 use crate::language::spec::limit::Limits;
 use crate::language::spec::map::MapDefinition;
@@ -32,6 +33,8 @@ pub struct Spec {
     pub curves: IndexMap<String, Definition<Curve>>,
     /// `[map.NAME]`, in the order of the text.
     pub maps: IndexMap<String, Definition<MapDefinition>>,
+    /// `[field.NAME]`, in the order of the text.
+    pub fields: IndexMap<String, Definition<FieldDefinition>>,
     /// `[shape.NAME]`, in the order of the text.
     pub shapes: IndexMap<String, Definition<ShapeDefinition>>,
     /// `[material.NAME]`, in the order of the text.

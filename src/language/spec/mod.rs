@@ -13,6 +13,7 @@ mod cubic;
 mod curve;
 mod deform;
 mod document;
+mod field;
 mod formula;
 mod grid;
 mod height;
@@ -75,6 +76,10 @@ pub use cubic::{Basis, BetaSpline, Border, Cubic};
 pub use curve::{Circle, Curve, Ellipse, Helix, Line, Polyline, Reverse, Transform};
 pub use deform::{Along, Bend, CoordinateAxis, Taper, Twist};
 pub use document::{Asset, Definition, Spec, Unit};
+pub use field::{
+    BumpField, FallOff, Field, FieldDefinition, FieldFormula, FieldJoin, FieldOptions, FieldQuadric,
+    FieldSum, HalfSpaceField, ImplicitShape, JoinMethod, PerturbedField, SkeletonElement, SkeletonField,
+};
 pub use formula::{Formula, FormulaCurve, FormulaForm};
 pub use grid::{Degrees, Directions, Rows};
 pub use height::{HeightBound, HeightClose, HeightMap, Level, Mask, Split, SplitPart};
@@ -107,7 +112,7 @@ pub use primitive::{
 pub use profile::{Axis, Bevel, BevelEnds, BevelForm, Extrude, Fill, Revolve};
 pub use quadric::{Quadric, Within};
 pub use reference::{
-    CurveReference, Family, MapReference, MaterialName, NodeName, ShapeName, ShapeReference,
+    CurveReference, Family, FieldReference, MapReference, MaterialName, NodeName, ShapeName, ShapeReference,
 };
 pub use ruled::{End, Ruled, Translational};
 pub use scaling::{Blend, Factor, ScaleStation, Scaling};

@@ -11,7 +11,7 @@ use crate::language::spec::whole::ordered;
 use crate::language::value::show_number;
 
 /// The chapters after the first, and the tables that stand in each.
-const CHAPTERS: [(&str, &str, &[&str]); 6] = [
+const CHAPTERS: [(&str, &str, &[&str]); 7] = [
     (
         "Curves",
         "A curve is written `[curve.NAME.KIND]`, or in place where a curve is asked for: `{ circle = { radius = 0.005 } }`.",
@@ -62,6 +62,22 @@ const CHAPTERS: [(&str, &str, &[&str]); 6] = [
         &["map", "map image", "map raw", "map grid", "map points", "map formula", "map noise", "map combine"],
     ),
     (
+        "Fields",
+        "A field is written `[field.NAME]`, for the fields of every field, and `[field.NAME.KIND]`, or in place where a field is asked for. Simple bodies (`sphere`, `box`, `cylinder`, `capsule`, `torus`, `cone`) are written as shapes of these kinds are.",
+        &[
+            "field",
+            "skeleton field",
+            "element",
+            "field formula",
+            "field quadric",
+            "half space",
+            "field join",
+            "field sum",
+            "perturbed field",
+            "bump",
+        ],
+    ),
+    (
         "Shapes",
         "A shape is written `[shape.NAME]`, for the fields of every shape, and `[shape.NAME.KIND]`.",
         &[
@@ -109,6 +125,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 6] = [
             "split",
             "split part",
             "parametric",
+            "implicit shape",
             "mesh",
             "import",
             "taper",

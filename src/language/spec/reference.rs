@@ -4,6 +4,7 @@ use serde_json::{Value as Json, json};
 
 use crate::language::source::Span;
 use crate::language::spec::curve::Curve;
+use crate::language::spec::field::FieldDefinition;
 use crate::language::spec::kind::take_kind;
 use crate::language::spec::map::MapDefinition;
 use crate::language::spec::reader::{Fields, Read, Reader};
@@ -19,6 +20,8 @@ pub enum Family {
     Curve,
     /// `[map.NAME.KIND]`.
     Map,
+    /// `[field.NAME.KIND]`.
+    Field,
     /// `[shape.NAME.KIND]`.
     Shape,
     /// `[material.NAME]`.
@@ -29,7 +32,7 @@ pub enum Family {
 
 impl Family {
     /// All families.
-    pub const ALL: [Self; 5] = [Self::Curve, Self::Map, Self::Shape, Self::Material, Self::Node];
+    pub const ALL: [Self; 6] = [Self::Curve, Self::Map, Self::Field, Self::Shape, Self::Material, Self::Node];
 
     /// The word of headers and messages.
     #[must_use]
@@ -37,6 +40,7 @@ impl Family {
         match self {
             Self::Curve => "curve",
             Self::Map => "map",
+            Self::Field => "field",
             Self::Shape => "shape",
             Self::Material => "material",
             Self::Node => "node",
@@ -75,6 +79,15 @@ pub enum MapReference {
     Named(Sp<String>),
     /// Written in place: `{ noise = { hills = [3, 3] } }`, common fields beside the kind.
     Inline(Sp<Box<MapDefinition>>),
+}
+
+/// The field that a field asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FieldReference {
+    /// By name; the name is defined.
+    Named(Sp<String>),
+    /// Written in place: `{ sphere = { radius = 1 } }`, common fields beside the kind.
+    Inline(Sp<Box<FieldDefinition>>),
 }
 
 /// The shape that a field asks for.
@@ -156,6 +169,26 @@ impl Read for MapReference {
 
     fn schema(schemas: &mut Schemas) -> Json {
         named_or_inline(MapDefinition::schema(schemas))
+    }
+}
+
+impl Read for FieldReference {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        match &value.data {
+            Data::String(name) => Some(Self::Named(named(Family::Field, name, value.span, reader))),
+            Data::Table(_) => {
+                let field = Box::<FieldDefinition>::read(value, reader)?;
+                Some(Self::Inline(Sp::new(field, value.span)))
+            }
+            _ => {
+                reader.mismatch(value, "the name of a field, or a field in place");
+                None
+            }
+        }
+    }
+
+    fn schema(schemas: &mut Schemas) -> Json {
+        named_or_inline(FieldDefinition::schema(schemas))
     }
 }
 

@@ -8,6 +8,7 @@ use crate::language::spec::assertion::read_assertions;
 use crate::language::spec::check::Check;
 use crate::language::spec::curve::Curve;
 use crate::language::spec::document::{Asset, Definition, Spec, Unit};
+use crate::language::spec::field::Field;
 use crate::language::spec::import::Up;
 use crate::language::spec::kind::Kinds;
 use crate::language::spec::limit::{LimitFields, Limits};
@@ -22,7 +23,7 @@ use crate::language::spec::spanned::Sp;
 use crate::language::value::{Data, Entry, Table};
 
 /// Everything that may stand at the top of a document, with what it means.
-pub(crate) const SECTIONS: [(&str, &str); 14] = [
+pub(crate) const SECTIONS: [(&str, &str); 15] = [
     ("unit", "The unit of every length; metres when it is not written."),
     ("up", "The axis that points up; y when it is not written."),
     ("tolerance", "How far meshes may lie from the true surfaces, in the document's unit."),
@@ -31,6 +32,7 @@ pub(crate) const SECTIONS: [(&str, &str); 14] = [
     ("parameters", "Named values for expressions: numbers, booleans, points, strings."),
     ("curve", "Curves, as `[curve.NAME.KIND]`."),
     ("map", "Maps of heights and masks, as `[map.NAME]` and `[map.NAME.KIND]`."),
+    ("field", "Fields whose zeros are surfaces, as `[field.NAME]` and `[field.NAME.KIND]`."),
     ("shape", "Shapes, as `[shape.NAME]` and `[shape.NAME.KIND]`."),
     ("material", "Materials, as `[material.NAME]`."),
     ("node", "Nodes, as `[node.NAME]`. Without any, each shape that no other definition uses is shown."),
@@ -65,14 +67,28 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
         limits.flatten().map_or(Limits::default(), |fields| fields.under(Limits::default(), &mut reader));
     let curves = family(Family::Curve, Curve::NAMES, table, &mut reader);
     let maps = family(Family::Map, Map::NAMES, table, &mut reader);
+    let fields = family(Family::Field, Field::NAMES, table, &mut reader);
     let shapes = family(Family::Shape, Shape::NAMES, table, &mut reader);
     let materials = family(Family::Material, &[], table, &mut reader);
     let nodes = family(Family::Node, &[], table, &mut reader);
     let asserts = table.get("assert").map(|value| read_assertions(value, &mut reader)).unwrap_or_default();
     let roots = resolve(&Names::of(table), limits.recursion, &mut reader);
     let asset = asset.flatten().unwrap_or(Asset { name: None, description: None });
-    let spec =
-        Spec { unit, up, tolerance, asset, curves, maps, shapes, materials, nodes, roots, asserts, limits };
+    let spec = Spec {
+        unit,
+        up,
+        tolerance,
+        asset,
+        curves,
+        maps,
+        fields,
+        shapes,
+        materials,
+        nodes,
+        roots,
+        asserts,
+        limits,
+    };
     let found = reader.diagnostics;
     let failed = found.iter().any(|one| one.severity == Severity::Error);
     ((!failed).then_some(spec), found)
@@ -106,6 +122,9 @@ fn unknown_sections(table: &Table, reader: &mut Reader<'_>) {
             }
             (_, Data::Table(_)) if Curve::NAMES.contains(&name.as_str()) => {
                 report.help(format!("a curve is written as [curve.NAME.{name}]"))
+            }
+            (_, Data::Table(_)) if Field::NAMES.contains(&name.as_str()) => {
+                report.help(format!("a field is written as [field.NAME.{name}]"))
             }
             (_, Data::Table(_)) if Map::NAMES.contains(&name.as_str()) => {
                 report.help(format!("a map is written as [map.NAME.{name}]"))

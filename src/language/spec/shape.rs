@@ -9,6 +9,7 @@ use crate::language::spec::combine::{Array, Copy, Group, Mirror};
 use crate::language::spec::construct::{choices, kinds, table};
 use crate::language::spec::coons::{Coons, Gordon};
 use crate::language::spec::deform::{Along, Bend, Taper, Twist};
+use crate::language::spec::field::ImplicitShape;
 use crate::language::spec::height::{HeightMap, Split};
 use crate::language::spec::import::Import;
 use crate::language::spec::joined::Joined;
@@ -166,6 +167,8 @@ kinds! {
         Split(Split) = "split";
         /// A surface by formulas of u and v.
         Parametric(Parametric) = "parametric";
+        /// Where a field is zero.
+        Implicit(ImplicitShape) = "implicit";
         /// Points and faces, written out.
         Mesh(Mesh) = "mesh";
         /// A model from a file.

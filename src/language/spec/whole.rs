@@ -6,6 +6,7 @@ use crate::language::spec::assertion;
 use crate::language::spec::check::Check;
 use crate::language::spec::curve::Curve;
 use crate::language::spec::document::{Asset, Unit};
+use crate::language::spec::field::FieldDefinition;
 use crate::language::spec::import::Up;
 use crate::language::spec::limit::LimitFields;
 use crate::language::spec::map::MapDefinition;
@@ -73,6 +74,7 @@ fn section(name: &str, schemas: &mut Schemas) -> Json {
         "asset" => Asset::schema(schemas),
         "parameters" => named(json!({ "type": ["number", "boolean", "array", "string"] })),
         "curve" => named(Curve::schema(schemas)),
+        "field" => named(FieldDefinition::schema(schemas)),
         "map" => named(MapDefinition::schema(schemas)),
         "shape" => named(ShapeDefinition::schema(schemas)),
         "material" => named(Material::schema(schemas)),

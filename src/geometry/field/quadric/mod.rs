@@ -46,6 +46,16 @@ impl Quadric {
         Self { a: self.a, b: self.gradient(origin), c: self.value(origin) }
     }
 
+    /// A box around an ellipsoid; none for surfaces without end.
+    #[must_use]
+    pub fn ends(&self) -> Option<Bounds> {
+        let form = QuadricForm::anywhere(self);
+        (form.kind == QuadricKind::Ellipsoid && self.bent(DVec3::X) > 0.0).then(|| {
+            let reach = DVec3::splat(form.half.max_element());
+            Bounds { min: form.origin - reach, max: form.origin + reach }
+        })
+    }
+
     /// What the squares and products make of a direction.
     #[must_use]
     pub fn bent(&self, direction: DVec3) -> f64 {

@@ -1,0 +1,251 @@
+//! Fields of a document into fields of the kernel, and shapes of their surfaces.
+
+use glam::{DAffine3, DVec3};
+
+use super::formula::Compiler;
+use super::{Builder, placement};
+use crate::geometry::curve::AnyCurve;
+use crate::geometry::field::{
+    AnyField, Blend, Bump, Element, Form, Join, Joined, Line, Perturbed, Placed, Potential, Primitive,
+    Quadric, Skeleton, Sum,
+};
+use crate::geometry::mesh::triangulate::triangulate_in_space;
+use crate::geometry::number::Bounds;
+use crate::geometry::tessellate::FieldSurface;
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::Span;
+use crate::language::spec::{
+    FallOff, Field as Kind, FieldDefinition, FieldJoin, FieldReference, FieldSum, ImplicitShape, JoinMethod,
+    PerturbedField, SkeletonElement, SkeletonField, Sp,
+};
+use crate::model::{MaterialHandle, Recipe};
+
+impl Builder<'_> {
+    /// The surface of a field.
+    pub(super) fn implicit_shape(&mut self, written: &ImplicitShape, span: Span) -> Option<Recipe> {
+        let field = self.field_of(&written.field)?;
+        let materials = self.element_materials(&written.field)?;
+        let level = written.level.value;
+        let field = if level == 0.0 {
+            field
+        } else {
+            AnyField::Sum(Sum { of: vec![(1.0, field)], constant: -level })
+        };
+        let known = if level == 0.0 { field.bounds() } else { None };
+        let within =
+            written.within.as_ref().map(|within| Bounds { min: within.min.value, max: within.max.value });
+        let Some(within) = within.or(known) else {
+            let report = Diagnostic::error(Code::NeedsBox, "no box is known that holds the surface of this field")
+                .at(span, "needs `within`")
+                .help("write `within = { min = [-1, -1, -1], max = [1, 1, 1] }`: where the surface lies, with a little room");
+            self.report(report);
+            return None;
+        };
+        let size = (within.max - within.min).to_array();
+        if within.is_empty() || size.iter().any(|side| *side <= 0.0) {
+            self.report(
+                Diagnostic::error(
+                    Code::NoFieldSurface,
+                    "this field has no inside: its parts do not reach each other or the level",
+                )
+                .at(span, "no surface"),
+            );
+            return None;
+        }
+        let surface = FieldSurface { field, within, least: written.search.map(|size| size.value) };
+        Some(Recipe::Implicit { surface: Box::new(surface), materials })
+    }
+
+    /// The field that a reference names or writes.
+    pub(super) fn field_of(&mut self, reference: &FieldReference) -> Option<AnyField> {
+        match reference {
+            FieldReference::Named(name) => self.named_field(&name.value),
+            FieldReference::Inline(field) => self.field(&field.value),
+        }
+    }
+
+    /// The field of a name, built at its first use.
+    pub(super) fn named_field(&mut self, name: &str) -> Option<AnyField> {
+        if let Some(known) = self.fields.get(name) {
+            return known.clone();
+        }
+        let definition = self.spec.fields.get(name)?;
+        let field = self.field(&definition.value);
+        self.fields.insert(name.to_owned(), field.clone());
+        field
+    }
+
+    /// The materials of the elements of a skeleton; none of other fields.
+    fn element_materials(&mut self, reference: &FieldReference) -> Option<Vec<Option<MaterialHandle>>> {
+        let spec = self.spec;
+        let definition = match reference {
+            FieldReference::Named(name) => &spec.fields.get(&name.value)?.value,
+            FieldReference::Inline(field) => &field.value,
+        };
+        let Kind::Skeleton(skeleton) = &definition.kind else { return Some(Vec::new()) };
+        if skeleton.elements.iter().all(|element| element.value.material.is_none()) {
+            return Some(Vec::new());
+        }
+        let mut all = Vec::new();
+        for element in &skeleton.elements {
+            all.push(match &element.value.material {
+                Some(name) => Some(self.material(&name.value.0)?),
+                None => None,
+            });
+        }
+        Some(all)
+    }
+
+    fn field(&mut self, definition: &FieldDefinition) -> Option<AnyField> {
+        let kind = self.field_kind(&definition.kind)?;
+        let options = &definition.options;
+        let thick = match options.thickness {
+            Some(thickness) => AnyField::Skin { of: Box::new(kind), half: thickness.value / 2.0 },
+            None => kind,
+        };
+        let grown = if options.grow.value == 0.0 {
+            thick
+        } else {
+            AnyField::Grown { of: Box::new(thick), by: options.grow.value }
+        };
+        let map = placement(DVec3::splat(options.scale.value), options.rotate.value, options.at.value);
+        Some(if map == DAffine3::IDENTITY { grown } else { AnyField::Placed(Placed::new(grown, &map)) })
+    }
+
+    fn field_kind(&mut self, kind: &Kind) -> Option<AnyField> {
+        let body = |body: Primitive, center: DVec3| {
+            let body = AnyField::Primitive(body);
+            let map = DAffine3::from_translation(center);
+            if center == DVec3::ZERO { body } else { AnyField::Placed(Placed::new(body, &map)) }
+        };
+        Some(match kind {
+            Kind::Skeleton(skeleton) => self.skeleton(skeleton)?,
+            Kind::Formula(written) => {
+                let mut compiler = Compiler::new(&["x", "y", "z"]);
+                let output = match compiler.add(&written.f.value) {
+                    Ok(slot) => slot,
+                    Err(diagnostic) => {
+                        self.report(*diagnostic);
+                        return None;
+                    }
+                };
+                AnyField::Formula(Box::new(compiler.finish(vec![output]).formula))
+            }
+            Kind::Quadric(q) => AnyField::Quadric(Box::new(Quadric::new(
+                DVec3::new(q.xx.value, q.yy.value, q.zz.value),
+                DVec3::new(q.xy.value, q.yz.value, q.zx.value),
+                DVec3::new(q.x.value, q.y.value, q.z.value),
+                q.constant.value,
+            ))),
+            Kind::Sphere(ball) => body(Primitive::Sphere { radius: ball.radius.value }, ball.center.value),
+            Kind::Box(cuboid) => {
+                let half = cuboid.size.value / 2.0;
+                body(Primitive::Box { half, radius: cuboid.radius.value }, cuboid.center.value)
+            }
+            Kind::Cylinder(tube) => {
+                let (radius, half) = (tube.radius.value, tube.height.value / 2.0);
+                body(Primitive::Cylinder { radius, half }, tube.center.value)
+            }
+            Kind::Capsule(tube) => {
+                let (radius, half) = (tube.radius.value, tube.height.value / 2.0 - tube.radius.value);
+                body(Primitive::Capsule { radius, half: half.max(0.0) }, tube.center.value)
+            }
+            Kind::Torus(ring) => {
+                let (major, minor) = (ring.radius.value, ring.tube_radius.value);
+                body(Primitive::Torus { major, minor }, ring.center.value)
+            }
+            Kind::Cone(cone) => {
+                let (bottom, top) = (cone.radius.value, cone.top_radius.value);
+                body(Primitive::Cone { bottom, top, half: cone.height.value / 2.0 }, cone.center.value)
+            }
+            Kind::HalfSpace(half) => {
+                let normal = half.normal.value.normalize();
+                AnyField::Primitive(Primitive::Plane { normal, offset: normal.dot(half.point.value) })
+            }
+            Kind::Union(join) => self.joined_fields(join, Join::Union)?,
+            Kind::Intersection(join) => self.joined_fields(join, Join::Intersection)?,
+            Kind::Difference(join) => self.joined_fields(join, Join::Difference)?,
+            Kind::Sum(sum) => self.field_sum(sum)?,
+            Kind::Perturbed(perturbed) => self.perturbed(perturbed)?,
+        })
+    }
+
+    fn joined_fields(&mut self, written: &FieldJoin, join: fn(Blend) -> Join) -> Option<AnyField> {
+        let of: Vec<_> = written.of.iter().map(|field| self.field_of(field)).collect();
+        let blend = match (written.blend.value, written.method.value) {
+            (size, _) if size > 0.0 => Blend::Smooth(size),
+            (_, JoinMethod::MinMax) => Blend::Sharp,
+            (_, JoinMethod::RFunction) => Blend::Rvachev,
+        };
+        let of: Option<Vec<_>> = of.into_iter().collect();
+        Some(AnyField::Joined(Joined { join: join(blend), of: of? }))
+    }
+
+    fn field_sum(&mut self, written: &FieldSum) -> Option<AnyField> {
+        let of: Vec<_> = written.of.iter().map(|field| self.field_of(field)).collect();
+        let of: Option<Vec<_>> = of.into_iter().collect();
+        let weight = |k: usize| written.weights.as_ref().map_or(1.0, |weights| weights.value[k]);
+        let of = of?.into_iter().enumerate().map(|(k, field)| (weight(k), field)).collect();
+        Some(AnyField::Sum(Sum { of, constant: written.constant.value }))
+    }
+
+    fn perturbed(&mut self, written: &PerturbedField) -> Option<AnyField> {
+        let base = self.field_of(&written.base);
+        let bumps: Vec<_> = (written.bumps.iter())
+            .map(|bump| {
+                let field = self.field_of(&bump.value.field)?;
+                Some(Bump { field, factor: bump.value.factor.value })
+            })
+            .collect();
+        let bumps: Option<Vec<_>> = bumps.into_iter().collect();
+        Some(AnyField::Perturbed(Perturbed { base: Box::new(base?), bumps: bumps? }))
+    }
+
+    fn skeleton(&mut self, written: &SkeletonField) -> Option<AnyField> {
+        let elements: Vec<_> = written.elements.iter().map(|element| self.elements(element)).collect();
+        let elements: Option<Vec<_>> = elements.into_iter().collect();
+        let elements = elements?.concat();
+        Some(AnyField::Skeleton(Box::new(Skeleton::new(elements, written.level.value))))
+    }
+
+    /// The element; of a curve of several parts one for each part would count double where they meet, so they are one.
+    fn elements(&mut self, written: &Sp<SkeletonElement>) -> Option<Vec<Element>> {
+        let radius = written.radius.value;
+        let potential = match written.potential.value {
+            FallOff::Wyvill => Potential::Wyvill { radius },
+            FallOff::Gaussian => Potential::Gaussian { sharpness: 1.0 / (radius * radius) },
+            FallOff::Power1 => Potential::Power { radius, exponent: 1 },
+            FallOff::Power2 => Potential::Power { radius, exponent: 2 },
+            FallOff::Power3 => Potential::Power { radius, exponent: 3 },
+        };
+        let form = if let Some(point) = &written.point {
+            Form::Point(point.value)
+        } else if let Some(ends) = &written.segment {
+            Form::Segment(ends[0].value, ends[1].value)
+        } else if let Some(corners) = &written.polygon {
+            self.polygon_form(corners)?
+        } else {
+            let parts: Vec<AnyCurve> = self.parts_of(written.curve.as_ref()?)?;
+            Form::Curves(parts.iter().map(Line::new).collect())
+        };
+        Some(vec![Element { form, potential, strength: written.strength.value }])
+    }
+
+    fn polygon_form(&mut self, corners: &Sp<Vec<Sp<DVec3>>>) -> Option<Form> {
+        let places: Vec<DVec3> = corners.iter().map(|corner| corner.value).collect();
+        match triangulate_in_space(&[&places]) {
+            Ok((triangles, _)) if !triangles.is_empty() => Some(Form::Triangles(
+                triangles.iter().map(|t| t.map(|corner| places[corner as usize])).collect(),
+            )),
+            _ => {
+                let report = Diagnostic::error(Code::NoElement, "this polygon encloses no area");
+                self.report(
+                    report
+                        .at(corners.span, "flat, or crossing itself")
+                        .help("a line is a `segment` or a `curve`"),
+                );
+                None
+            }
+        }
+    }
+}

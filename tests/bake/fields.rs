@@ -1,0 +1,93 @@
+//! Surfaces of fields: closed, without crossings, with the measures of closed forms.
+
+use core::f64::consts::PI;
+
+use super::{assert_near, bake};
+
+/// Wyvill's potential is 1/2 at half of its radius: one point makes a ball.
+#[test]
+fn one_point_makes_a_ball() {
+    let text = "tolerance = 1e-3\n[field.a.skeleton]\nelements = [{ point = [1, 0, 0], radius = 2 }]\n\
+         [shape.s.implicit]\nfield = \"a\"";
+    let baked = bake(text);
+    let facts = &baked.only().facts;
+    assert!(facts.closed && facts.manifold && facts.genus == Some(0), "{facts:?}");
+    assert_near(facts.volume.expect("closed"), 4.0 / 3.0 * PI, 2e-2);
+    for [x, y, z] in &baked.glb.named("s").positions {
+        let radius = ((x - 1.0) * (x - 1.0) + y * y + z * z).sqrt();
+        assert!((radius - 1.0).abs() < 3e-7, "{radius}");
+    }
+}
+
+/// A drilled block keeps its edges: no vertex is lost on them, and its faces are flat.
+#[test]
+fn a_drilled_block_keeps_its_edges() {
+    let baked = bake(include_str!("../../specs/fields/block.toml"));
+    let facts = &baked.only().facts;
+    assert!(facts.closed && facts.manifold && facts.genus == Some(3), "{facts:?}");
+    let bores = PI * (0.02 * 0.02 + 2.0 * 0.006 * 0.006) * 0.03;
+    let volume = 0.12 * 0.03 * 0.07 - bores;
+    assert!((facts.volume.expect("closed") / volume - 1.0).abs() < 5e-3, "{facts:?}");
+    let size = facts.bounds.expect("not empty");
+    assert_eq!((size.max[0], size.max[1], size.max[2]), (0.06, 0.015, 0.035));
+}
+
+/// Dense sampling of every surface of the gallery finds no more than its bound says, and the tolerance allows.
+#[test]
+fn bounds_hold() {
+    for text in [
+        include_str!("../../specs/fields/cloud.toml"),
+        include_str!("../../specs/fields/creature.toml"),
+        include_str!("../../specs/fields/gyroid.toml"),
+        include_str!("../../specs/fields/head.toml"),
+    ] {
+        let baked = bake(text);
+        let (_, shape) = baked.report().shapes.iter().next().expect("one shape");
+        let deviation = shape.deviation;
+        let measured = deviation.measured.expect("asked for");
+        assert!(
+            measured <= deviation.bound && deviation.bound <= deviation.tolerance.expect("one was asked for"),
+            "{deviation:?}"
+        );
+        assert!(shape.facts.closed && shape.facts.manifold, "{:?}", shape.facts);
+    }
+}
+
+/// Two balls far apart, each of the material of its own element.
+#[test]
+fn each_element_keeps_its_material() {
+    let text = "tolerance = 1e-2\n[material.red]\ncolor = \"#ff0000\"\n[material.blue]\ncolor = \"#0000ff\"\n\
+         [field.a.skeleton]\nelements = [{ point = [2, 0, 0], radius = 1, material = \"blue\" },\n\
+         { point = [-2, 0, 0], radius = 1, material = \"red\" }]\n[shape.s.implicit]\nfield = \"a\"";
+    let baked = bake(text);
+    let materials = baked.glb.list("materials");
+    let meshes = baked.glb.list("meshes");
+    let primitives = meshes[0]["primitives"].as_array().expect("primitives");
+    assert_eq!(primitives.len(), 2);
+    let index =
+        |value: &serde_json::Value| usize::try_from(value.as_u64().expect("an index")).expect("small");
+    for primitive in primitives {
+        let name = &materials[index(&primitive["material"])]["name"];
+        let positions = baked.glb.accessor(index(&primitive["attributes"]["POSITION"]));
+        let side = if name == "blue" { 1.0 } else { -1.0 };
+        let used = baked.glb.accessor(index(&primitive["indices"]));
+        assert!(used.len() > 100);
+        for corner in used {
+            let corner = corner[0] as usize;
+            assert!((positions[corner][0] * side - 2.0).abs() < 0.6, "{name}: {:?}", positions[corner]);
+        }
+    }
+}
+
+/// The skin of a ball: two spheres, one inside the other.
+#[test]
+fn a_skin_has_two_sides() {
+    let baked = bake(
+        "tolerance = 1e-2\n[shape.s.implicit]\nfield = { sphere = { radius = 1 }, thickness = 0.2 }\n\
+         within = { min = [-2, -2, -2], max = [2, 2, 2] }",
+    );
+    let facts = &baked.only().facts;
+    assert_eq!((facts.components, facts.closed), (2, true), "{facts:?}");
+    let volume = 4.0 / 3.0 * PI * (1.1_f64.powi(3) - 0.9_f64.powi(3));
+    assert!((facts.volume.expect("closed") / volume - 1.0).abs() < 0.03, "{facts:?}");
+}
