@@ -185,7 +185,9 @@ impl<'a> Maker<'a> {
                 let made = field_surface(field, &detail).map_err(|error| self.in_terms_of_limits(error))?;
                 let mut made = surface(made);
                 if !materials.is_empty() {
-                    split_by_element(&mut made, &field.field, materials);
+                    let whole = |own: &Option<MaterialHandle>| own.or(shape.options.material);
+                    let materials: Vec<_> = materials.iter().map(whole).collect();
+                    split_by_element(&mut made, &field.field, &materials);
                 }
                 return self.finished(shape, made);
             }
@@ -350,24 +352,44 @@ impl<'a> Maker<'a> {
     }
 }
 
-/// Gives each triangle the material of the element that is the strongest in its middle.
+/// Gives each triangle the material of the element that is the strongest in its middle. Each material has vertices of
+/// its own: no two primitives of a file share one.
 fn split_by_element(made: &mut Made, field: &AnyField, materials: &[Option<MaterialHandle>]) {
     let mesh = &mut made.mesh;
     let middle = |corners: &[VertexIndex; 3]| {
         let places = corners.map(|corner| mesh.points[mesh.vertices[corner.subscript()].point.subscript()]);
         (places[0] + places[1] + places[2]) / 3.0
     };
-    let of = |corners: &[VertexIndex; 3]| field.strongest(middle(corners)).unwrap_or(0);
+    // Elements of one material are one origin, named by the first of them.
+    let first = |element: usize| materials.iter().position(|other| *other == materials[element]);
+    let of = |corners: &[VertexIndex; 3]| field.strongest(middle(corners)).and_then(first).unwrap_or(0);
     let mut all: Vec<(usize, [VertexIndex; 3])> =
         mesh.triangles.iter().map(|corners| (of(corners), *corners)).collect();
     all.sort_by_key(|(element, _)| *element);
-    mesh.triangles = all.iter().map(|(_, corners)| *corners).collect();
+    let mut vertices: Vec<Vertex> = Vec::with_capacity(mesh.vertices.len());
+    let mut names = vec![u32::MAX; mesh.vertices.len()];
     mesh.runs.clear();
+    let mut start = 0;
     for (place, (element, _)) in all.iter().enumerate() {
-        if all.get(place + 1).is_none_or(|(next, _)| next != element) {
-            mesh.runs.push(Run { origin: mesh::index(*element), end: mesh::index(place + 1) });
+        if all.get(place + 1).is_some_and(|(next, _)| next == element) {
+            continue;
         }
+        // What was named for another material is named anew.
+        let own = mesh::index(vertices.len());
+        for (at, (_, corners)) in all.iter().enumerate().take(place + 1).skip(start) {
+            mesh.triangles[at] = corners.map(|corner| {
+                let name = &mut names[corner.subscript()];
+                if *name == u32::MAX || *name < own {
+                    *name = mesh::index(vertices.len());
+                    vertices.push(mesh.vertices[corner.subscript()]);
+                }
+                VertexIndex(*name)
+            });
+        }
+        mesh.runs.push(Run { origin: mesh::index(*element), end: mesh::index(place + 1) });
+        start = place + 1;
     }
+    mesh.vertices = vertices;
     made.materials = materials.to_vec();
 }
 
