@@ -13,6 +13,7 @@
 mod cells;
 mod dress;
 mod edges;
+mod estimate;
 mod march;
 mod probe;
 mod refine;
@@ -28,7 +29,7 @@ use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessel
 use crate::geometry::field::AnyField;
 use crate::geometry::mesh;
 use crate::geometry::mesh::crossing::crossings;
-use crate::geometry::number::{Bounds, single};
+use crate::geometry::number::{Bounds, floor_large, single};
 use cells::{Cells, Search};
 use march::{NoValue, march};
 use probe::{Probe, Work};
@@ -52,6 +53,8 @@ const MOST_CELLS: u64 = 1 << 20;
 const MOST_ROUGH: usize = 1 << 21;
 /// How often parts of fields may be studied over cells.
 const CELL_BUDGET: u64 = 1 << 25;
+/// How many times the triangles of the limit there may be before edges are drawn together.
+const MOST_SPARE: usize = 2;
 /// How much greater than the greatest sample the deviation is said to be.
 const MARGIN: f64 = 1.06;
 /// How often triangles that are too far off or cross are made smaller.
@@ -172,6 +175,11 @@ impl<'a> Maker<'a> {
         brackets: &[[DVec3; 2]],
     ) -> Result<(Refiner<'a>, f64), TessellateError> {
         self.settle(&mut skin, brackets);
+        let least = estimate::least_triangles(&skin, self.kinks, self.tolerance);
+        if least > self.limit as f64 {
+            return Err(TessellateError::TooMany { needed: floor_large(least), limit: self.limit as u64 });
+        }
+        let most = skin.triangles.len().max(self.limit.saturating_mul(MOST_SPARE));
         if self.kinks {
             self.probe.add_edges(&mut skin);
         }
@@ -180,7 +188,7 @@ impl<'a> Maker<'a> {
             probe: self.probe,
             skin,
             tolerance: target,
-            limit: self.limit.saturating_mul(8),
+            limit: most,
             changed: Changed::default(),
         };
         if !refiner.run() || self.probe.is_spent() {
