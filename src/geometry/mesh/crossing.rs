@@ -233,7 +233,7 @@ fn lies_on(segment: [DVec3; 2], triangle: [DVec3; 3]) -> bool {
 mod tests {
     use glam::DVec3;
 
-    use super::crossings;
+    use super::{PAIRS, crossings};
 
     fn places(list: &[[f64; 3]]) -> Vec<DVec3> {
         list.iter().map(|place| DVec3::from_array(*place)).collect()
@@ -304,5 +304,38 @@ mod tests {
         triangles.push([1681, 1682, 1683]);
         let found = crossings(&points, &triangles);
         assert!(!found.is_empty() && found.iter().all(|pair| pair[1] == 3200), "{found:?}");
+    }
+
+    /// What is told of one triangle is capped; of those with greater numbers that cross it nothing is lost.
+    #[test]
+    fn a_triangle_that_crosses_very_many_is_told_with_some_of_them() {
+        let blades = 100;
+        let wide = [[-1.0, -1.0, 0.0], [300.0, -1.0, 0.0], [-1.0, 300.0, 0.0]];
+        let blade = |k: u32| {
+            let x = f64::from(k);
+            [[x, 0.2, -1.0], [x, 0.2, 1.0], [x, 0.8, 1.0]]
+        };
+        let all: Vec<[f64; 3]> = std::iter::once(wide).chain((0..blades).map(blade)).flatten().collect();
+        let points = places(&all);
+        let triangles: Vec<[u32; 3]> = (0..=blades).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let first = crossings(&points, &triangles);
+        assert_eq!(first.len(), PAIRS);
+        assert!(first.iter().all(|pair| pair[0] == 0), "{first:?}");
+        let last: Vec<[u32; 3]> = triangles.iter().rev().copied().collect();
+        let expected: Vec<[u32; 2]> = (0..blades).map(|k| [k, blades]).collect();
+        assert_eq!(crossings(&points, &last), expected);
+    }
+
+    /// A heap of equal triangles has as many pairs as its square; the answer does not.
+    #[test]
+    fn a_heap_of_triangles_has_an_answer_of_its_own_size() {
+        let count: usize = 3000;
+        let points = places(&vec![BASE; count].concat());
+        let corner = |k: usize| u32::try_from(k).expect("few");
+        let triangles: Vec<[u32; 3]> =
+            (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2].map(corner)).collect();
+        let found = crossings(&points, &triangles);
+        // Of the last ones fewer are left.
+        assert_eq!(found.len(), PAIRS * (count - PAIRS) + PAIRS * (PAIRS - 1) / 2);
     }
 }

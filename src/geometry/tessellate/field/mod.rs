@@ -49,8 +49,8 @@ pub struct FieldSurface {
 
 /// Most cells that are looked at.
 const MOST_CELLS: u64 = 1 << 20;
-/// Most first triangles.
-const MOST_ROUGH: usize = 1 << 21;
+/// Most triangles that are worked on, first ones among them: some hundred bytes each, and some tens of microseconds.
+const MOST_TRIANGLES: usize = 1 << 21;
 /// How often parts of fields may be studied over cells.
 const CELL_BUDGET: u64 = 1 << 25;
 /// How many times the triangles of the limit there may be before edges are drawn together.
@@ -133,10 +133,10 @@ pub fn field_surface(shape: &FieldSurface, detail: &Detail) -> Result<Tessellati
         |needed: usize| TessellateError::TooMany { needed: needed as u64, limit: detail.triangle_limit };
     // First triangles are many, and become few.
     let most = limit.saturating_mul(8);
-    let rough = march(field, &cells, most.min(MOST_ROUGH))
+    let rough = march(field, &cells, most.min(MOST_TRIANGLES))
         .map_err(|NoValue(place)| TessellateError::NoValue { place })?;
     let Some(rough) = rough else {
-        let error = if most <= MOST_ROUGH { too_many(limit + 1) } else { TessellateError::TooMuchWork };
+        let error = if most <= MOST_TRIANGLES { too_many(limit + 1) } else { TessellateError::TooMuchWork };
         return Err(error);
     };
     if rough.triangles.is_empty() {
@@ -179,7 +179,10 @@ impl<'a> Maker<'a> {
         if least > self.limit as f64 {
             return Err(TessellateError::TooMany { needed: floor_large(least), limit: self.limit as u64 });
         }
-        let most = skin.triangles.len().max(self.limit.saturating_mul(MOST_SPARE));
+        if least > MOST_TRIANGLES as f64 {
+            return Err(TessellateError::TooMuchWork);
+        }
+        let most = skin.triangles.len().max(self.limit.saturating_mul(MOST_SPARE).min(MOST_TRIANGLES));
         if self.kinks {
             self.probe.add_edges(&mut skin);
         }
@@ -192,7 +195,7 @@ impl<'a> Maker<'a> {
             changed: Changed::default(),
         };
         if !refiner.run() || self.probe.is_spent() {
-            if self.probe.is_spent() {
+            if self.probe.is_spent() || most <= self.limit {
                 return Err(TessellateError::TooMuchWork);
             }
             return Err(TessellateError::TooMany { needed: self.limit as u64 + 1, limit: self.limit as u64 });
