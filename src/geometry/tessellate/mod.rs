@@ -182,23 +182,21 @@ pub enum TessellateError {
     #[error("the field has no surface in its box")]
     NoSurface,
     /// A field that has no value somewhere in its box.
-    #[error("the field has no value at [{}, {}, {}]", place.x, place.y, place.z)]
+    #[error("the field has no value at {}", told(*place))]
     NoValue {
         /// Where.
         place: DVec3,
     },
     /// A surface that reaches the box in which it is searched.
-    #[error("the surface leaves its box at [{}, {}, {}]", place.x, place.y, place.z)]
+    #[error("the surface leaves its box at {}", told(*place))]
     LeavesBox {
         /// A place near the box where it does.
         place: DVec3,
     },
     /// A surface whose triangles do not become sound, as where it touches itself.
     #[error(
-        "near [{}, {}, {}] its triangles {}",
-        crate::geometry::number::single(place.x),
-        crate::geometry::number::single(place.y),
-        crate::geometry::number::single(place.z),
+        "near {} its triangles {}",
+        told(*place),
         if *crossing { "cross each other" } else { "stay further from it than the tolerance" }
     )]
     Unsound {
@@ -210,4 +208,19 @@ pub enum TessellateError {
     /// A field whose surface would take too long to find.
     #[error("to find its surface takes too many steps")]
     TooMuchWork,
+}
+
+/// A place for a person: no more digits than it takes to find it.
+fn told(place: DVec3) -> String {
+    let mut digits = 0;
+    let mut size = place.abs().max_element();
+    while size < 100.0 && digits < 12 {
+        (size, digits) = (10.0 * size, digits + 1);
+    }
+    let number = |x: f64| {
+        let text = format!("{x:.digits$}");
+        let text = if digits > 0 { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+        if text == "-0" { "0".to_owned() } else { text.to_owned() }
+    };
+    format!("[{}, {}, {}]", number(place.x), number(place.y), number(place.z))
 }

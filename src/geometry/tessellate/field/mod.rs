@@ -187,13 +187,8 @@ impl<'a> Maker<'a> {
             self.probe.add_edges(&mut skin);
         }
         let target = self.tolerance / MARGIN;
-        let mut refiner = Refiner {
-            probe: self.probe,
-            skin,
-            tolerance: target,
-            limit: most,
-            changed: Changed::default(),
-        };
+        let mut refiner =
+            Refiner { probe: self.probe, skin, tolerance: target, limit: most, changed: Changed::default() };
         if !refiner.run() || self.probe.is_spent() {
             if self.probe.is_spent() || most <= self.limit {
                 return Err(TessellateError::TooMuchWork);
