@@ -1,5 +1,6 @@
 //! The pipeline, one line a stage.
 
+mod motion;
 mod notice;
 mod solid;
 mod subdivide;
@@ -60,8 +61,10 @@ pub fn compile(document: &Document, files: &dyn Files, options: &Options) -> Res
     let built = build::model(&spec, &options.name, files).map_err(fail)?;
     warnings.extend(built.warnings.iter().cloned());
     let realized = realize::scene(&built.model, &realize::Options::default());
-    let Realized { mut scene, shapes, notes } = realized.map_err(|errors| fail(refusals(&built, errors)))?;
+    let Realized { mut scene, shapes, loose, notes } =
+        realized.map_err(|errors| fail(refusals(&built, errors)))?;
     warnings.extend(notes.iter().map(|(shape, note)| noticed(&built, *shape, note)));
+    warnings.extend(loose.iter().map(|one| motion::loose(&built, one)));
     warnings.extend(beyond_tolerance(&scene, &shapes, &built));
     optimize::run(&mut scene);
     let checked = scene::check::check(&scene).map_err(|error| fail(vec![unwritable(&error, &built)]))?;
@@ -148,6 +151,9 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
     if let RealizeError::Subdivide { shape, cage, fault } = error {
         return subdivide::refused(built, *shape, *cage, fault);
     }
+    if let Some(report) = motion::refused(built, shape, error) {
+        return report;
+    }
     let name = &built.model.shape(shape).name;
     let (code, help) = match error {
         RealizeError::Limit { .. }
@@ -203,6 +209,9 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
         }
         RealizeError::Deform(_) => {
             (Code::NoLength, "write another `axis`, or `from` and `to` inside the shape")
+        }
+        RealizeError::Unweighted { .. } | RealizeError::SkinnedWire { .. } => {
+            (Code::Unweighted, "see its skin")
         }
         RealizeError::Solid { .. } => (Code::NoSolid, "see the parts of it"),
         RealizeError::Subdivide { .. } => (Code::BadCage, "see its cage"),
@@ -274,6 +283,7 @@ fn unwritable(error: &SceneError, built: &Built) -> Diagnostic {
         SceneError::NoArea(name) | SceneError::NoLength(name) => (Code::NoArea, named(name)),
         SceneError::TexturedWire(name, _) => (Code::TexturedWire, named(name)),
         SceneError::NoUv(name, _) => (Code::Conflict, named(name)),
+        SceneError::Animation(..) | SceneError::Skin(..) => (Code::NotFinite, None),
         SceneError::NotFinite(name) | SceneError::NotUnit(name, _) => (Code::NotFinite, named(name)),
         _ => (Code::NothingToShow, None),
     };

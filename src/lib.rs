@@ -21,15 +21,16 @@
 //! | `geometry::map` | `geometry::number` |
 //! | `geometry::tessellate` | `geometry::number`, `geometry::formula`, `geometry::planar`, `geometry::curve`, `geometry::mesh`, `geometry::surface`, `geometry::field`, `geometry::map` |
 //! | `geometry::profile` | `geometry::number`, `geometry::planar`, `geometry::curve`, `geometry::tessellate` |
+//! | `motion` | `geometry::number`, `geometry::formula`, `geometry::curve`, `geometry::mesh`, `geometry::surface` |
 //! | `import` | `geometry::number`, `geometry::mesh` |
-//! | `model` | `geometry` |
-//! | `scene` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `model` |
-//! | `realize` | `geometry`, `model`, `scene` |
-//! | `optimize` | `geometry::number`, `geometry::mesh`, `scene` |
-//! | `gltf` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `scene` |
-//! | `report` | `geometry`, `model`, `scene`, `realize`, `gltf` |
+//! | `model` | `geometry`, `motion` |
+//! | `scene` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `model` |
+//! | `realize` | `geometry`, `motion`, `model`, `scene` |
+//! | `optimize` | `geometry::number`, `geometry::mesh`, `motion`, `scene` |
+//! | `gltf` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `scene` |
+//! | `report` | `geometry`, `motion`, `model`, `scene`, `realize`, `gltf` |
 //! | `language` | `geometry::number` |
-//! | `build` | `geometry`, `import`, `language`, `model` |
+//! | `build` | `geometry`, `motion`, `import`, `language`, `model` |
 //! | `compile` | everything but `cli` |
 //! | `cli` | everything |
 //!
@@ -46,6 +47,7 @@ pub mod gltf;
 pub mod import;
 pub mod language;
 pub mod model;
+pub mod motion;
 pub mod optimize;
 pub mod realize;
 pub mod report;

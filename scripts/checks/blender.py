@@ -3,51 +3,70 @@
 from __future__ import annotations
 
 import math
+import tempfile
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import bpy  # isort: skip -- the wheel makes bmesh importable
 import bmesh
-from mathutils import Matrix
 
-from checks import finding
+from checks import blender_motion, finding, played
+from checks.document import split, without_animations
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from pathlib import Path
 
 TOOL = "blender"
-TO_GLTF = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
 
 
 def measure(path: Path) -> finding.Measured:
     """The facts of one file. Blender is Z-up: its (x, y, z) is glTF's (x, z, -y)."""
-    open_file(path)
+    open_still(path)
     shown = [item for item in bpy.context.scene.objects if item.type == "MESH"]
     graph = bpy.context.evaluated_depsgraph_get()
     graph.update()
     meshes = {item.data.name: item.data for item in shown}
     totals = {
         "meshes": len(meshes),
-        "nodes": len(bpy.context.scene.objects),
+        "nodes": count_nodes(),
         "materials": len(bpy.data.materials),
         "images": len(bpy.data.images),
         "bounds": box(item.matrix_world @ vertex.co for item in shown for vertex in item.data.vertices),
     }
     shapes = {name: shape(mesh) for name, mesh in meshes.items()}
-    nodes = {item.name: world(item) for item in bpy.context.scene.objects}
-    return finding.Measured(TOOL, bpy.app.version_string, str(path), totals, shapes, nodes)
+    nodes = blender_motion.worlds(graph)
+    rest = blender_motion.Rest.of_scene()
+    clips = {}
+    if played.asked(path):
+        open_file(path)
+        clips = blender_motion.clips(path, rest)
+    return finding.Measured(TOOL, bpy.app.version_string, str(path), totals, shapes, nodes, clips)
+
+
+def count_nodes() -> int:
+    """Objects and bones; the importer makes an armature for each skeleton, which is no node of the file."""
+    objects = bpy.context.scene.objects
+    bones = sum(len(item.data.bones) for item in objects if item.type == "ARMATURE")
+    return sum(item.type != "ARMATURE" for item in objects) + bones
+
+
+def open_still(path: Path) -> None:
+    """The file as it is at rest."""
+    if not split(path.read_bytes())[0].get("animations"):
+        open_file(path)
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        still = Path(folder) / path.name
+        still.write_bytes(without_animations(path))
+        open_file(still)
 
 
 def open_file(path: Path) -> None:
     """An empty scene with the file in it, vertices split as written."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    bpy.ops.import_scene.gltf(filepath=str(path), merge_vertices=False, disable_bone_shape=True)
-
-
-def world(item: bpy.types.Object) -> list[float]:
-    """An object's world matrix in glTF's axes, column by column."""
-    turned = TO_GLTF @ item.matrix_world @ TO_GLTF.inverted()
-    return [turned[row][column] for column in range(4) for row in range(4)]
+    bpy.ops.import_scene.gltf(
+        filepath=str(path), merge_vertices=False, disable_bone_shape=True, bone_heuristic="BLENDER"
+    )
 
 
 def shape(data: bpy.types.Mesh) -> dict[str, Any]:

@@ -23,6 +23,10 @@ PRECISION = {"written": 1e-9, "trimesh": 1e-9, "meshlab": 1e-6, "blender": 1e-5,
 # Coordinates are written in single precision and only ever copied or turned by a node's matrix.
 COORDINATE = 1e-6
 
+# Tools that play clips, and how far their poses may be from the report's, in sizes of the model.
+PLAYERS = {"written", "three", "blender"}
+POSED = 1e-4
+
 COUNTS = {
     "primitives", "triangles", "vertices", "points", "closed", "manifold", "components", "euler", "genus",
     "boundary-edges", "boundary-loops", "crowded-edges", "misoriented-edges", "degenerate-triangles", "meshes",
@@ -56,6 +60,7 @@ DEMANDS = {
     "validator-warnings": 0,
     "validator-infos": 0,
     "required-extensions": [],
+    "weight-faults": 0,
     "unused-vertices": 0,
     "largest-normal-error": 1e-6,
 }
@@ -118,6 +123,7 @@ def compare(asset: str, report: Facts, measured: list[Measured]) -> list[Finding
         findings += facts(asset, "totals", totals, one.tool, one.totals)
         findings += shapes(asset, claimed, one)
         findings += nodes(asset, report, one)
+        findings += clips(asset, report, one)
     findings += deviations(asset, report.get("shapes", {}))
     return findings + list(unmeasured(asset, report, findings))
 
@@ -154,7 +160,44 @@ def nodes(asset: str, report: Facts, one: Measured) -> Iterator[Finding]:
     for node in report.get("nodes", []) if one.nodes else []:
         found, name = one.nodes.get(node["name"]), node["name"]
         allowed = COORDINATE * max(reach, 1.0)
+        if node.get("joint") and one.tool == "blender":
+            allowed *= 10.0  # bones are chains of single precision matrices there
         yield Finding(asset, f"nodes.{name}", one.tool, node["matrix"], found, differs(node["matrix"], found), allowed)
+
+
+def clips(asset: str, report: Facts, one: Measured) -> Iterator[Finding]:
+    """The poses of one tool that plays clips.
+
+    Each of them must be found, within a ten thousandth of the model's size. A player that turns along straight
+    lines between keys is held to the bound of the clip besides, which promises both ways.
+    """
+    if one.tool not in PLAYERS:
+        return
+    for name, clip in report.get("clips", {}).items():
+        box = clip["bounds"]
+        size = math.dist(box["min"], box["max"])
+        allowed = POSED * size + (2.0 * clip["bound"] if one.tool == "blender" else 0.0)
+        found = one.clips.get(name, [])
+        if len(found) != len(clip["poses"]):
+            yield failure(asset, one.tool, f"plays {len(found)} of {len(clip['poses'])} poses", f"clips.{name}")
+            continue
+        for claim, other in zip(clip["poses"], found, strict=True):
+            place = f"clips.{name}.{claim['time']:.3f}"
+            for node, matrix in claim["nodes"].items():
+                seen = other["nodes"].get(node)
+                yield Finding(asset, f"{place}.{node}", one.tool, matrix, seen, turned(matrix, seen, size), allowed)
+            for mesh, vertices in claim["vertices"].items():
+                told = [vertex["at"] for vertex in vertices]
+                seen = other["vertices"].get(mesh)
+                yield Finding(asset, f"{place}.{mesh}", one.tool, told, seen, differs(told, seen), allowed)
+
+
+def turned(claimed: list[float], found: list[float] | None, size: float) -> float:
+    """How far apart two places are: the origins, and axes that reach a tenth of the model's size."""
+    if found is None:
+        return math.inf
+    axes = max(abs(a - b) for a, b in zip(claimed[:12], found[:12], strict=True))
+    return max(axes * size / 10.0, *(abs(a - b) for a, b in zip(claimed[12:15], found[12:15], strict=True)))
 
 
 def facts(asset: str, place: str, claims: Facts, tool: str, measured: Facts) -> Iterator[Finding]:

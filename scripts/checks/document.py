@@ -202,6 +202,18 @@ def without_lines(path: Path) -> bytes:
             node["mesh"] = mesh
     if not meshes:
         del document["meshes"]
+    return joined(document, binary)
+
+
+def without_animations(path: Path) -> bytes:
+    """The .glb without its animations, for tools that show a file as its first one begins."""
+    document, binary = split(path.read_bytes())
+    document.pop("animations", None)
+    return joined(document, binary)
+
+
+def joined(document: dict[str, Any], binary: bytes) -> bytes:
+    """A .glb of its JSON and its binary chunk."""
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
     chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(binary), 0x004E4942) + binary

@@ -22,7 +22,8 @@ class Measured:
     """What one tool found in one file.
 
     `totals` are facts of the whole file, `shapes` those of each glTF mesh by its name, in the mesh's own
-    coordinates, `nodes` world matrices by node name, column by column. `error` says why the tool could not
+    coordinates, `nodes` world matrices by node name, column by column, `clips` the poses of each clip at the
+    times that the report names. `error` says why the tool could not
     measure; then nothing else is set.
     """
 
@@ -32,6 +33,7 @@ class Measured:
     totals: dict[str, Any] = field(default_factory=dict)
     shapes: dict[str, dict[str, Any]] = field(default_factory=dict)
     nodes: dict[str, list[float]] = field(default_factory=dict)
+    clips: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
     error: str | None = None
 
 

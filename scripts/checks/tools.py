@@ -17,7 +17,7 @@ from checks.finding import Measured
 SCRIPTS = Path(__file__).resolve().parent.parent
 PYTHON = SCRIPTS.parent / ".venv" / "bin" / "python"
 PYTHON_TOOLS = ("written", "trimesh", "meshlab", "blender")
-NODE_TOOLS = ("validator",)
+NODE_TOOLS = ("validator", "three")
 TOOLS = PYTHON_TOOLS + NODE_TOOLS
 SECONDS_A_BATCH = 1800
 

@@ -16,7 +16,7 @@ from blake3 import blake3
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from checks import finding
+from checks import finding, played
 from checks.document import Cloud, Document, Mesh, Primitive
 
 if TYPE_CHECKING:
@@ -39,7 +39,9 @@ def measure(path: Path) -> finding.Measured:
     totals["required-extensions"] = document.json.get("extensionsRequired", [])
     shapes = {mesh.name: shape(mesh) for mesh in document.meshes}
     nodes = {name: world.T.ravel().tolist() for name, world in document.worlds.items()}
-    return finding.Measured(TOOL, version("numpy"), str(path), totals, shapes, nodes)
+    totals["weight-faults"] = played.weight_faults(document)
+    clips = played.clips(path)
+    return finding.Measured(TOOL, version("numpy"), str(path), totals, shapes, nodes, clips)
 
 
 def count(document: Document) -> dict[str, Any]:

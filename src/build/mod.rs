@@ -8,8 +8,10 @@ mod bevel;
 mod bezier_triangle;
 mod bspline;
 mod carry;
+mod clip;
 mod conic;
 mod coons;
+mod course;
 mod curve;
 mod deform;
 mod extrude;
@@ -38,6 +40,8 @@ mod quadric;
 mod ruled;
 mod scaling;
 mod shape;
+mod skeleton;
+mod skin;
 mod solid;
 mod spline;
 mod split;
@@ -69,6 +73,10 @@ pub struct Built {
     pub places: Vec<Span>,
     /// Where the faces of each shape are written, by handle; none for shapes whose faces are not.
     pub faces: Vec<Vec<Span>>,
+    /// Where each skin is defined, by its index.
+    pub skin_places: Vec<Span>,
+    /// Where each clip is defined, by its index.
+    pub clip_places: Vec<Span>,
     /// What a person should know though nothing is wrong.
     pub warnings: Vec<Diagnostic>,
 }
@@ -80,11 +88,11 @@ pub struct Built {
 pub fn model(spec: &Spec, name: &str, files: &dyn Files) -> Result<Built, Vec<Diagnostic>> {
     let mut builder = Builder::new(spec, name, files);
     builder.build();
-    let Builder { model, places, faces, reports, .. } = builder;
+    let Builder { model, places, faces, skin_places, clip_places, reports, .. } = builder;
     if reports.iter().any(|report| report.severity == Severity::Error) {
         return Err(reports);
     }
-    Ok(Built { model, places, faces, warnings: reports })
+    Ok(Built { model, places, faces, skin_places, clip_places, warnings: reports })
 }
 
 /// Builds one curve of a document, with all its parts; none when there is no such curve.
@@ -106,6 +114,10 @@ struct Builder<'a> {
     faces: Vec<Vec<Span>>,
     /// Where the faces of the shape that is being built are written.
     face_places: Vec<Span>,
+    /// Where each skin is defined.
+    skin_places: Vec<Span>,
+    /// Where each clip is defined.
+    clip_places: Vec<Span>,
     reports: Vec<Diagnostic>,
     shapes: IndexMap<String, Option<ShapeHandle>>,
     materials: IndexMap<String, Option<MaterialHandle>>,
@@ -128,6 +140,10 @@ impl<'a> Builder<'a> {
             materials: Vec::new(),
             images: Vec::new(),
             nodes: Vec::new(),
+            skeletons: Vec::new(),
+            skins: Vec::new(),
+            clips: Vec::new(),
+            motion_tolerance: spec.motion_tolerance.map(|tolerance| tolerance.value * spec.unit.metres()),
             paths: Vec::new(),
             limits: Limits {
                 triangles: spec.limits.triangles,
@@ -142,6 +158,8 @@ impl<'a> Builder<'a> {
             places: Vec::new(),
             faces: Vec::new(),
             face_places: Vec::new(),
+            skin_places: Vec::new(),
+            clip_places: Vec::new(),
             reports: Vec::new(),
             shapes: IndexMap::new(),
             materials: IndexMap::new(),
@@ -171,7 +189,10 @@ impl<'a> Builder<'a> {
         for name in spec.shapes.keys() {
             self.named_shape(name);
         }
+        self.skeletons();
         self.nodes();
+        self.skins();
+        self.clips();
     }
 
     fn report(&mut self, diagnostic: Diagnostic) {

@@ -37,6 +37,7 @@ impl Builder<'_> {
                 shape,
                 material: None,
                 parent: None,
+                socket: None,
                 translation: DVec3::ZERO,
                 rotation: DQuat::IDENTITY,
                 scale: DVec3::ONE,
@@ -51,11 +52,13 @@ impl Builder<'_> {
             let shape = node.shape.as_ref().and_then(|shape| self.named_shape(&shape.value.0));
             let material = node.material.as_ref().and_then(|material| self.material(&material.value.0));
             let parent = node.parent.as_ref().and_then(|parent| spec.nodes.get_index_of(&parent.value.0));
+            let socket = node.socket.as_ref().and_then(|socket| self.socket(socket));
             self.model.nodes.push(Node {
                 name: name.clone(),
                 shape,
                 material,
                 parent,
+                socket,
                 translation: node.at.value,
                 rotation: rotation(node.rotate.value),
                 scale: node.scale.value.0,

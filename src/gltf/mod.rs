@@ -7,8 +7,11 @@
 mod buffer;
 mod lines;
 mod material;
+mod motion;
 mod read;
+mod read_motion;
 mod write;
 
 pub use read::{Geometry, Indices, Lines, Part, PositionBytes, Read, ReadError, read};
-pub use write::{WriteError, Written, WrittenGeometry, write};
+pub use read_motion::{ReadAnimation, ReadChannel, ReadInfluences, ReadSkin};
+pub use write::{WriteError, Written, WrittenAnimation, WrittenGeometry, write};

@@ -22,6 +22,8 @@ pub struct Read<'a> {
     pub root: Root,
     /// For each mesh of the file its triangles.
     pub geometries: Vec<Geometry<'a>>,
+    /// The binary chunk.
+    pub binary: &'a [u8],
 }
 
 /// A position as it stands in a file: three little-endian floats.
@@ -149,11 +151,11 @@ pub fn read(bytes: &[u8]) -> Result<Read<'_>, ReadError> {
     let geometries: Result<Vec<_>, _> =
         (0..root.meshes.len()).map(|mesh| geometry(&root, binary, mesh)).collect();
     let geometries = geometries?;
-    Ok(Read { root, geometries })
+    Ok(Read { root, geometries, binary })
 }
 
 /// Where the elements of an accessor stand.
-struct Elements {
+pub(super) struct Elements {
     /// Their bytes, from the first of the first element to the last of the last.
     range: Range<usize>,
     /// Bytes from one element to the next.
@@ -169,7 +171,7 @@ impl Elements {
     }
 
     /// The bytes of each element.
-    fn each<'a>(&self, binary: &'a [u8]) -> impl Iterator<Item = &'a [u8]> {
+    pub(super) fn each<'a>(&self, binary: &'a [u8]) -> impl Iterator<Item = &'a [u8]> {
         let (bytes, stride, width) = (&binary[self.range.clone()], self.stride, self.width);
         (0..self.count).map(move |k| &bytes[k * stride..k * stride + width])
     }
@@ -332,7 +334,12 @@ fn in_place(primitives: &[Primitive]) -> Option<(Range<usize>, usize)> {
     Some((first.range.start..end, first.width))
 }
 
-fn elements(root: &Root, binary: &[u8], index: Index<Accessor>, width: usize) -> Result<Elements, ReadError> {
+pub(super) fn elements(
+    root: &Root,
+    binary: &[u8],
+    index: Index<Accessor>,
+    width: usize,
+) -> Result<Elements, ReadError> {
     let at = index.value();
     let accessor = root.accessors.get(at).ok_or_else(|| ReadError::Missing(format!("accessor {at}")))?;
     let view = accessor.buffer_view.filter(|_| accessor.sparse.is_none());
@@ -364,7 +371,7 @@ fn elements(root: &Root, binary: &[u8], index: Index<Accessor>, width: usize) ->
     Ok(Elements { range: size(start)..size(end), stride, width, count })
 }
 
-fn kind(root: &Root, index: Index<Accessor>) -> Option<(ComponentType, Type)> {
+pub(super) fn kind(root: &Root, index: Index<Accessor>) -> Option<(ComponentType, Type)> {
     let accessor = root.accessors.get(index.value())?;
     match (accessor.component_type, accessor.type_) {
         (Checked::Valid(component), Checked::Valid(shape)) => Some((component.0, shape)),

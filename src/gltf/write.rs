@@ -11,7 +11,7 @@ use gltf::json::{Accessor, Asset, Index, Mesh, Node, Root, Scene};
 use thiserror::Error;
 
 use super::buffer::{Binary, Elements, accessor};
-use super::{lines, material};
+use super::{lines, material, motion};
 use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
 use crate::geometry::number::size;
@@ -25,6 +25,21 @@ pub struct Written {
     pub bytes: Vec<u8>,
     /// For each geometry of the scene what is known of it.
     pub geometries: Vec<WrittenGeometry>,
+    /// For each animation what is known of it.
+    pub animations: Vec<WrittenAnimation>,
+}
+
+/// What is known of an animation beyond its bytes.
+#[derive(Clone, Debug)]
+pub struct WrittenAnimation {
+    /// Name of the clip.
+    pub name: String,
+    /// No vertex is further from the exact motion at any sample, metres.
+    pub bound: f64,
+    /// What was asked for, metres.
+    pub tolerance: f64,
+    /// Samples of the exact motion.
+    pub samples: usize,
 }
 
 /// What is known of a geometry beyond its bytes.
@@ -78,7 +93,16 @@ pub fn write(checked: Checked<'_>, anchors: bool) -> Result<Written, WriteError>
         let (triangles, lines) = &shared[mesh.geometry];
         writer.mesh(checked, mesh, triangles.as_ref(), lines);
     }
+    motion::skins(&mut writer.root, &mut writer.binary, scene);
+    motion::animations(&mut writer.root, &mut writer.binary, scene);
     writer.nodes(checked);
+    let animated = |animation: &crate::scene::Animation| WrittenAnimation {
+        name: animation.name.clone(),
+        bound: animation.bound,
+        tolerance: animation.tolerance,
+        samples: animation.samples,
+    };
+    let animations = scene.animations.iter().map(animated).collect();
     let known = |(index, geometry): (usize, &Geometry)| WrittenGeometry {
         name: geometry.name.clone(),
         mesh: scene.meshes.iter().position(|mesh| mesh.geometry == index).unwrap_or(0),
@@ -92,7 +116,7 @@ pub fn write(checked: Checked<'_>, anchors: bool) -> Result<Written, WriteError>
         anchors: if anchors { geometry.mesh.vertices.iter().map(|v| v.anchor).collect() } else { Vec::new() },
     };
     let geometries = scene.geometries.iter().enumerate().map(known).collect();
-    Ok(Written { bytes: writer.finish()?, geometries })
+    Ok(Written { bytes: writer.finish()?, geometries, animations })
 }
 
 fn asset() -> Asset {
@@ -111,13 +135,17 @@ fn binary_size(checked: Checked<'_>) -> usize {
         let vertices = geometry.mesh.vertices.len();
         let points = geometry.wire.points.len();
         let triangles = geometry.mesh.triangles.len() * 3 * index_width(vertices);
-        vertices * (24 + tangent + uv) + triangles + points * (12 + 2 * index_width(points)) + 128
+        let carried = if geometry.influences.is_some() { 8 } else { 0 };
+        vertices * (24 + tangent + uv + carried) + triangles + points * (12 + 2 * index_width(points)) + 128
     };
     let images: usize = scene.images.iter().map(|image| image.bytes.len() + 4).sum();
     // The header and the JSON chunk are put before: room for most, so that the bytes are not copied for it.
     let json = 4096
         + 1024 * (scene.geometries.len() + scene.meshes.len() + scene.materials.len() + scene.nodes.len());
-    scene.geometries.iter().map(geometry).sum::<usize>() + images + json
+    let channel = |channel: &crate::scene::Channel| channel.times.len() * 20 + 256;
+    let channels = scene.animations.iter().flat_map(|animation| animation.channels.iter().map(channel));
+    let bind: usize = scene.skins.iter().map(|skin| skin.joints.len() * 80).sum();
+    scene.geometries.iter().map(geometry).sum::<usize>() + images + json + channels.sum::<usize>() + bind
 }
 
 /// Bytes of an index: 0xFFFF restarts primitives and is no vertex.
@@ -131,6 +159,7 @@ struct Shared {
     normal: Index<Accessor>,
     tangent: Option<Index<Accessor>>,
     uv: Option<Index<Accessor>>,
+    carried: Option<motion::Carried>,
     /// For each run its indices.
     indices: Vec<Index<Accessor>>,
 }
@@ -164,8 +193,9 @@ impl Writer {
                 }
             })
         });
+        let carried = motion::carried(root, binary, geometry);
         let indices = indices(root, binary, geometry);
-        Shared { position, normal, tangent, uv, indices }
+        Shared { position, normal, tangent, uv, carried, indices }
     }
 
     fn mesh(
@@ -189,6 +219,10 @@ impl Writer {
             }
             if let Some(uv) = shared.uv {
                 attributes.insert(Valid::Valid(Semantic::TexCoords(0)), uv);
+            }
+            if let Some(carried) = &shared.carried {
+                attributes.insert(Valid::Valid(Semantic::Joints(0)), carried.joints);
+                attributes.insert(Valid::Valid(Semantic::Weights(0)), carried.weights);
             }
             Primitive {
                 attributes,
@@ -230,7 +264,7 @@ impl Writer {
                 camera: None,
                 children: (!below.is_empty()).then_some(below),
                 extensions: None,
-                extras: None,
+                extras: node.socket.then(motion::socket).flatten(),
                 matrix: None,
                 mesh: node.mesh.map(|mesh| Index::new(mesh::index(mesh))),
                 name: Some(node.name.clone()),
@@ -238,7 +272,7 @@ impl Writer {
                     .then(|| UnitQuaternion(node.rotation.as_quat().to_array())),
                 scale: plain(node.scale, glam::DVec3::ONE),
                 translation: plain(node.translation, glam::DVec3::ZERO),
-                skin: None,
+                skin: node.skin.map(|skin| Index::new(mesh::index(skin))),
                 weights: None,
             });
         }

@@ -6,6 +6,7 @@
 
 mod deform;
 mod material;
+mod motion;
 mod shape;
 mod solid;
 mod subdivide;
@@ -14,11 +15,12 @@ pub use deform::{AxialBending, Bending, PathBending};
 pub use material::{
     AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, Texture, Wrap,
 };
+pub use motion::{Clip, ClipTrack, NamedSkeleton, Skin, Socket, SocketHandle, Space, Target, WeightRule};
 pub use shape::{Density, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode};
 pub use solid::{Hollow, KeptSide, PlaneCut, SolidOperation, SolidRecipe};
 pub use subdivide::SubdivisionRecipe;
 
-use glam::{DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::geometry::curve::Path;
 
@@ -29,6 +31,33 @@ pub struct Frame {
     pub unit: f64,
     /// Whether z points up in the document.
     pub z_up: bool,
+}
+
+impl Frame {
+    /// The rotation that brings the document's up to +y: (x, y, z) becomes (x, z, -y).
+    #[must_use]
+    pub fn axes(&self) -> DMat3 {
+        if self.z_up { DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y) } else { DMat3::IDENTITY }
+    }
+
+    /// The same rotation as a quaternion.
+    #[must_use]
+    pub fn turn(&self) -> DQuat {
+        const HALF_ROOT: f64 = core::f64::consts::FRAC_1_SQRT_2;
+        if self.z_up { DQuat::from_xyzw(-HALF_ROOT, 0.0, 0.0, HALF_ROOT) } else { DQuat::IDENTITY }
+    }
+
+    /// From the document's unit and axes to metres with y up.
+    #[must_use]
+    pub fn map(&self) -> DAffine3 {
+        DAffine3::from_mat3(self.axes() * self.unit)
+    }
+
+    /// Factors along the document's axes, along those of the file: up changes places with depth.
+    #[must_use]
+    pub fn scale(&self, scale: DVec3) -> DVec3 {
+        if self.z_up { DVec3::new(scale.x, scale.z, scale.y) } else { scale }
+    }
 }
 
 /// A place in the tree of nodes, in the document's unit and axes.
@@ -42,6 +71,8 @@ pub struct Node {
     pub material: Option<MaterialHandle>,
     /// Index of the parent in [`Model::nodes`].
     pub parent: Option<usize>,
+    /// The socket that carries it, in place of a parent.
+    pub socket: Option<SocketHandle>,
     /// Applied last.
     pub translation: DVec3,
     /// Applied second.
@@ -87,6 +118,14 @@ pub struct Model {
     pub images: Vec<Image>,
     /// Nodes; parents stand anywhere.
     pub nodes: Vec<Node>,
+    /// Skeletons.
+    pub skeletons: Vec<NamedSkeleton>,
+    /// Skins, at most one for a shape.
+    pub skins: Vec<Skin>,
+    /// Motions.
+    pub clips: Vec<Clip>,
+    /// How far vertices may be from exact motions for clips that do not say, metres.
+    pub motion_tolerance: Option<f64>,
     /// Paths, for the report of their joints.
     pub paths: Vec<NamedPath>,
     /// The most that may be made.

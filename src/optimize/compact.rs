@@ -2,9 +2,11 @@
 
 use crate::geometry::mesh;
 use crate::geometry::mesh::{Mesh, PointIndex, Vertex, VertexIndex};
+use crate::motion::Influences;
 
 /// Renumbers what is used, in the order it stands. O(size of the mesh); nothing moves when all is used.
-pub(super) fn compact(mesh: &mut Mesh) {
+/// What is known of points goes with them.
+pub(super) fn compact(mesh: &mut Mesh, influences: Option<&mut Vec<Influences>>) {
     let mut vertex_used = vec![false; mesh.vertices.len()];
     let mut collapsed = false;
     for triangle in &mesh.triangles {
@@ -31,6 +33,10 @@ pub(super) fn compact(mesh: &mut Mesh) {
         let places = renumber(&point_used);
         let mut keep = point_used.iter();
         mesh.points.retain(|_| keep.next().copied().unwrap_or(false));
+        if let Some(influences) = influences {
+            let mut keep = point_used.iter();
+            influences.retain(|_| keep.next().copied().unwrap_or(false));
+        }
         for vertex in &mut mesh.vertices {
             vertex.point = PointIndex(places[vertex.point.0 as usize]);
         }
@@ -95,7 +101,7 @@ mod tests {
             triangles: vec![triangle(0, 3, 4), triangle(0, 1, 3), triangle(3, 4, 1)],
             runs: vec![Run { origin: 0, end: 1 }, Run { origin: 1, end: 2 }, Run { origin: 2, end: 3 }],
         };
-        compact(&mut mesh);
+        compact(&mut mesh, None);
         assert_eq!(mesh.triangles, vec![triangle(0, 1, 2)]);
         assert_eq!(mesh.runs, vec![Run { origin: 1, end: 1 }]);
         assert_eq!(mesh.points, vec![DVec3::ZERO, DVec3::X, DVec3::Y]);

@@ -8,7 +8,7 @@ use crate::scene::Scene;
 /// Runs all passes in order.
 pub fn run(scene: &mut Scene) {
     for geometry in &mut scene.geometries {
-        compact::compact(&mut geometry.mesh);
+        compact::compact(&mut geometry.mesh, geometry.influences.as_mut());
     }
     tangent::tangents(scene);
 }

@@ -11,6 +11,7 @@ mod facets;
 mod height;
 mod leaning;
 mod limit;
+mod motion;
 mod nearest;
 mod node;
 mod reach;
@@ -22,6 +23,7 @@ mod swept;
 
 pub use source::{Source, Sources, Window, sources};
 
+use glam::DVec3;
 use thiserror::Error;
 
 use crate::geometry::mesh::polygon::PolygonError;
@@ -70,6 +72,26 @@ pub enum RealizeError {
         /// Why.
         fault: SubdivideFault,
     },
+    /// Points that no joint carries.
+    #[error("{count} of its {of} points are carried by no joint")]
+    Unweighted {
+        /// Index of the skin.
+        skin: usize,
+        /// How many there are.
+        count: usize,
+        /// Of how many.
+        of: usize,
+        /// Where one of them is, in the document's unit and axes.
+        place: DVec3,
+        /// How far that one is from the nearest bone, in the document's unit.
+        distance: f64,
+    },
+    /// Lines have no weights.
+    #[error("it has lines, and joints carry triangles alone")]
+    SkinnedWire {
+        /// Index of the skin.
+        skin: usize,
+    },
     /// More vertices or bytes than allowed.
     #[error("this would make at least {needed} {what}, and the limit is {limit}")]
     Limit {
@@ -97,8 +119,21 @@ pub struct Realized {
     pub scene: Scene,
     /// For each geometry of the scene, the shape it comes from.
     pub shapes: Vec<ShapeHandle>,
+    /// Motions that are not within their tolerance.
+    pub loose: Vec<Loose>,
     /// Things a person should know, each with its shape.
     pub notes: Vec<(ShapeHandle, Note)>,
+}
+
+/// A motion whose written keys are further from it than its tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loose {
+    /// Index of the clip.
+    pub clip: usize,
+    /// How far, metres.
+    pub bound: f64,
+    /// What was asked for, metres.
+    pub tolerance: f64,
 }
 
 /// What a person should know of the faces of a shape.

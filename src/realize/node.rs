@@ -1,13 +1,12 @@
 //! Nodes, and the meshes they show.
 
-use glam::DVec3;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 use super::limit::{Cost, Spent};
 use super::shape::{self, Made, Maker};
-use super::{Options, RealizeError, Realized};
+use super::{Options, RealizeError, Realized, motion};
 use crate::geometry::mesh;
-use crate::model::{Frame, MaterialHandle, Model, ShapeHandle};
+use crate::model::{MaterialHandle, Model, ShapeHandle};
 use crate::scene::{Geometry, MeshUse, Node, Scene};
 
 /// A shape with the material that a node puts on it.
@@ -28,7 +27,11 @@ pub(super) fn scene(model: &Model, options: &Options) -> Result<Realized, Vec<(S
         }
     }
     let made = make_all(model, options, &shapes, &shown)?;
-    Ok(assemble(model, &shapes, &shown, made))
+    let mut realized = assemble(model, &shapes, &shown, made);
+    if !model.skeletons.is_empty() || !model.clips.is_empty() {
+        realized.loose = motion::add(model, &shapes, &mut realized.scene)?;
+    }
+    Ok(realized)
 }
 
 fn make_all(
@@ -98,12 +101,13 @@ fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Ma
             mesh: made.mesh,
             wire: made.wire,
             tangents: None,
+            influences: None,
         });
     }
     scene.materials = materials.iter().map(|handle| model.material(*handle).clone()).collect();
     keep_used_images(model, &mut scene);
     scene.nodes = nodes(model, shown);
-    Realized { scene, shapes: shapes.to_vec(), notes }
+    Realized { scene, shapes: shapes.to_vec(), loose: Vec::new(), notes }
 }
 
 fn used_materials(shown: &[Shown], shapes: &[ShapeHandle], made: &[Made]) -> Vec<MaterialHandle> {
@@ -154,23 +158,20 @@ fn nodes(model: &Model, shown: &[Shown]) -> Vec<Node> {
         let shape = node.shape?;
         shown.iter().position(|known| *known == (shape, node.material))
     };
-    let turn = shape::axes_rotation(&model.frame);
-    let axes = shape::axes(&model.frame);
+    let frame = &model.frame;
+    let (turn, axes) = (frame.turn(), frame.axes());
     model
         .nodes
         .iter()
         .map(|node| Node {
             name: node.name.clone(),
             mesh: place(node),
+            skin: None,
+            socket: false,
             parent: node.parent,
             translation: axes * node.translation * model.frame.unit,
             rotation: (turn * node.rotation * turn.conjugate()).normalize(),
-            scale: turned_scale(&model.frame, node.scale),
+            scale: frame.scale(node.scale),
         })
         .collect()
-}
-
-/// Factors along the document's axes, along those of the file: up changes places with depth.
-fn turned_scale(frame: &Frame, scale: DVec3) -> DVec3 {
-    if frame.z_up { DVec3::new(scale.x, scale.z, scale.y) } else { scale }
 }

@@ -1,6 +1,6 @@
 //! One shape into triangles.
 
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{DAffine3, DMat3};
 
 use super::limit::{self, Cost};
 use super::reach::bent;
@@ -471,23 +471,7 @@ pub(super) fn flatten(mut made: Made) -> Made {
 
 /// Turns and scales a finished shape from the document's unit and axes to metres with y up.
 pub(super) fn to_metres(made: &mut Made, frame: &Frame) {
-    place(made, &frame_map(frame));
-}
-
-/// The map of a frame.
-pub(super) fn frame_map(frame: &Frame) -> DAffine3 {
-    DAffine3::from_mat3(axes(frame) * frame.unit)
-}
-
-/// The rotation that brings the document's up to +y: (x, y, z) becomes (x, z, -y).
-pub(super) fn axes(frame: &Frame) -> DMat3 {
-    if frame.z_up { DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y) } else { DMat3::IDENTITY }
-}
-
-/// The same rotation as a quaternion.
-pub(super) fn axes_rotation(frame: &Frame) -> DQuat {
-    const HALF_ROOT: f64 = core::f64::consts::FRAC_1_SQRT_2;
-    if frame.z_up { DQuat::from_xyzw(-HALF_ROOT, 0.0, 0.0, HALF_ROOT) } else { DQuat::IDENTITY }
+    place(made, &frame.map());
 }
 
 /// Whether a shape carries texture coordinates, by its materials and what it asks for.

@@ -9,7 +9,6 @@ use super::deformation::deformation;
 use super::leaning::Leaning;
 use super::nearest::Field;
 use super::reach::bent;
-use super::shape::frame_map;
 use crate::geometry::curve::{AnyCurve, Curve, Domain, Side, nearest_within};
 use crate::geometry::field::Quadric;
 use crate::geometry::mesh::{self, Anchor};
@@ -129,7 +128,7 @@ impl Sources {
 pub fn sources(model: &Model, handle: ShapeHandle) -> Sources {
     let mut all = Vec::new();
     let collector = Collector { model, extents: extents(model) };
-    collector.collect(handle, &frame_map(&model.frame), false, &mut all);
+    collector.collect(handle, &model.frame.map(), false, &mut all);
     Sources(all)
 }
 

@@ -8,12 +8,14 @@ mod assertion;
 mod deviation;
 pub mod facts;
 mod joints;
+mod motion;
 mod polygons;
 mod quadrics;
 
 pub use assertion::{Check, Fault};
 pub use deviation::measure_deviation;
 pub use joints::JointFacts;
+pub use motion::{ClipFacts, PoseFacts, PosedVertex, SkinFacts};
 pub use quadrics::QuadricFacts;
 
 use indexmap::IndexMap;
@@ -49,6 +51,12 @@ pub struct Report {
     pub shapes: IndexMap<String, ShapeFacts>,
     /// Each node, in the order of the file.
     pub nodes: Vec<NodeFacts>,
+    /// Each skin, by its name.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub skins: IndexMap<String, SkinFacts>,
+    /// Each clip, by its name.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub clips: IndexMap<String, ClipFacts>,
     /// The joints of each path of the document.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub paths: IndexMap<String, Vec<JointFacts>>,
@@ -168,6 +176,9 @@ pub struct NodeFacts {
     pub parent: Option<String>,
     /// The mesh it shows.
     pub mesh: Option<String>,
+    /// Whether it is a joint of a skin.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub joint: bool,
     /// Its place in the scene, column by column.
     pub matrix: [f64; 16],
 }
@@ -215,6 +226,7 @@ pub fn measure(
         facts.insert(known.name.clone(), shape_facts(&file, known, (model, *handle), measured)?);
     }
     let nodes = nodes(&file);
+    let (skins, clips) = motion::motion(&file, written)?;
     Ok(Report {
         kiln: env!("CARGO_PKG_VERSION"),
         asset: model.name.clone(),
@@ -229,6 +241,8 @@ pub fn measure(
         totals: totals(&file, &facts, written, &nodes),
         shapes: facts,
         nodes,
+        skins,
+        clips,
         paths: joints::joints(model),
         quadrics: quadrics::quadrics(model),
         assertions: Vec::new(),
@@ -324,6 +338,7 @@ fn nodes(file: &Read<'_>) -> Vec<NodeFacts> {
             name: name(index),
             parent: parents[index].map(name),
             mesh: all[index].mesh.and_then(|mesh| file.root.meshes[mesh.value()].name.clone()),
+            joint: file.root.skins.iter().any(|skin| skin.joints.iter().any(|joint| joint.value() == index)),
             matrix: matrix.to_cols_array(),
         }
     };

@@ -3,6 +3,8 @@
 use glam::DVec3;
 use thiserror::Error;
 
+mod motion;
+
 use crate::geometry::mesh::VertexIndex;
 
 use super::{Geometry, MeshUse, Node, Scene};
@@ -62,6 +64,12 @@ pub enum SceneError {
     /// Nodes form a cycle.
     #[error("node `{0}` is its own ancestor")]
     Cycle(String),
+    /// A skin is not whole.
+    #[error("skin `{0}` has {1}")]
+    Skin(String, &'static str),
+    /// A motion cannot be written.
+    #[error("clip `{0}` has {1}")]
+    Animation(String, &'static str),
     /// A node's transform is not finite, or its rotation not of unit length.
     #[error("node `{0}` has a transform that glTF cannot hold")]
     Transform(String),
@@ -84,6 +92,7 @@ pub fn check(scene: &Scene) -> Result<Checked<'_>, SceneError> {
     for (index, node) in scene.nodes.iter().enumerate() {
         check_node(scene, index, node)?;
     }
+    motion::check(scene)?;
     Ok(Checked { scene })
 }
 

@@ -4,8 +4,10 @@
 //! [`Checked`], which every writer demands. Not promised of an unchecked scene: anything.
 
 pub mod check;
+mod motion;
 
 pub use check::{Checked, SceneError};
+pub use motion::{Animation, Channel, Skin};
 
 pub use crate::model::{AlphaMode, Filter, Image, ImageKind, Material, Texture, Wrap};
 
@@ -13,6 +15,7 @@ use glam::{DQuat, DVec3};
 
 use crate::geometry::mesh::{Mesh, Wire};
 use crate::geometry::tessellate::Deviation;
+use crate::motion::Influences;
 
 /// Everything that is written into one file.
 #[derive(Clone, Debug, Default)]
@@ -29,6 +32,10 @@ pub struct Scene {
     pub images: Vec<Image>,
     /// Nodes.
     pub nodes: Vec<Node>,
+    /// Skins.
+    pub skins: Vec<Skin>,
+    /// Motions.
+    pub animations: Vec<Animation>,
 }
 
 /// Triangles with their attributes, and lines.
@@ -45,6 +52,8 @@ pub struct Geometry {
     pub uv: bool,
     /// For each vertex a tangent and the sign of the bitangent, where any material has a normal texture.
     pub tangents: Option<Vec<[f32; 4]>>,
+    /// For each point of the mesh the joints that carry it, as indices of the skin's joints.
+    pub influences: Option<Vec<Influences>>,
     /// Distance from the exact shape before rounding.
     pub deviation: Deviation,
     /// Distance that was asked for, metres; `None` where a fixed grid or no surface made the mesh.
@@ -69,6 +78,10 @@ pub struct Node {
     pub name: String,
     /// Index into [`Scene::meshes`].
     pub mesh: Option<usize>,
+    /// Index into [`Scene::skins`].
+    pub skin: Option<usize>,
+    /// Whether it is a place to attach things to.
+    pub socket: bool,
     /// Index of the parent.
     pub parent: Option<usize>,
     /// Applied last, metres.

@@ -94,9 +94,11 @@ impl Glb {
             Some("VEC2") => 2,
             Some("VEC3") => 3,
             Some("VEC4") => 4,
+            Some("MAT4") => 16,
             other => panic!("{other:?}"),
         };
         let width = match count(&accessor["componentType"]) {
+            5121 => 1,
             5123 => 2,
             5125 | 5126 => 4,
             other => panic!("component type {other}"),
@@ -108,6 +110,7 @@ impl Glb {
         assert!(rows > 0, "accessor {index} is empty");
         let bytes = &self.view(view)[offset..offset + rows * columns * width];
         let read = |bytes: &[u8]| match count(&accessor["componentType"]) {
+            5121 => f64::from(bytes[0]),
             5123 => f64::from(u16::from_le_bytes(bytes.try_into().expect("two bytes"))),
             5125 => f64::from(u32::from_le_bytes(bytes.try_into().expect("four bytes"))),
             _ => f64::from(f32::from_le_bytes(bytes.try_into().expect("four bytes"))),

@@ -354,6 +354,31 @@ codes! {
     AssertionFailed = "K0951";
     /// the report has no such path
     UnknownFact = "K0952";
+
+    /// a skeleton has several roots
+    TwoRoots = "K0960";
+    /// a bone has no length
+    NoBone = "K0961";
+    /// a skinned shape is not where its skeleton is
+    SkinPlace = "K0962";
+    /// vertices that no joint carries
+    Unweighted = "K0963";
+    /// a track that moves nothing, or what moves already
+    BadTrack = "K0964";
+    /// keys out of order
+    KeyOrder = "K0965";
+    /// a key has the wrong numbers
+    KeyValue = "K0966";
+    /// a clip has no length
+    NoTime = "K0967";
+    /// a pose is beyond the limits of a joint
+    BeyondLimit = "K0968";
+    /// a loop does not end as it begins
+    LoopSeam = "K0969";
+    /// a motion goes past the end of its curve
+    PastTheEnd = "K0970";
+    /// a motion is not followed within its tolerance
+    LooseMotion = "K0971";
 }
 
 impl std::fmt::Display for Code {

@@ -434,4 +434,40 @@ examples! {
         "[shape.a.box]\nsize = [1, 1, 1]\n[assert]\ntriangles = 10" => "[shape.a.box]\nsize = [1, 1, 1]\n[assert]\ntriangles = 12";
     UnknownFact: "Keys of [assert] are paths of the report: `triangles`, `shapes.NAME.area`, `totals.draw-calls`. With one shape its facts need no path.",
         "[shape.a.box]\nsize = [1, 1, 1]\n[assert]\ntrianglez = 12" => "[shape.a.box]\nsize = [1, 1, 1]\n[assert]\ntriangles = 12";
+    TwoRoots: "The joints of a skeleton hang together in one tree: all but one of them, the root, have a parent.",
+        "[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.joint.a]\nhead = [0, 0, 0]\ntail = [0, 1, 0]\n[skeleton.s.joint.b]\nhead = [1, 0, 0]\ntail = [1, 1, 0]" =>
+        "[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.joint.a]\nhead = [0, 0, 0]\ntail = [0, 1, 0]\n[skeleton.s.joint.b]\nparent = \"a\"\nhead = [1, 0, 0]\ntail = [1, 1, 0]";
+    NoBone: "A joint's rest frame has its y along the bone, from head to tail, so these must be apart.",
+        "[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.joint.a]\nhead = [0, 1, 0]\ntail = [0, 1, 0]" =>
+        "[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.joint.a]\nhead = [0, 0, 0]\ntail = [0, 1, 0]";
+    SkinPlace: "A player puts the vertices of a skinned shape where its joints are and takes no notice of the node that shows it. So that node has no place of its own, the shape is shown, and it has one skin. A node can carry the whole: name it as the skeleton's parent.",
+        "[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.joint.a]\nhead = [0, 0, 0]\ntail = [0, 1, 0]\n[skin.k]\nshape = \"b\"\nskeleton = \"s\"\nweights = \"rigid\"\n[node.n]\nshape = \"b\"\nat = [0, 1, 0]" =>
+        "[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.joint.a]\nhead = [0, 0, 0]\ntail = [0, 1, 0]\n[skin.k]\nshape = \"b\"\nskeleton = \"s\"\nweights = \"rigid\"\n[node.n]\nshape = \"b\"";
+    Unweighted: "Each vertex of a skinned shape is carried by at least one joint. With envelopes a vertex may lie beyond the radius and falloff of all of them; the message counts such vertices and tells where one is.",
+        "[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.joint.a]\nhead = [0, 0, 0]\ntail = [0, 1, 0]\nfalloff = 0.1\n[skin.k]\nshape = \"b\"\nskeleton = \"s\"" =>
+        "[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.joint.a]\nhead = [0, 0, 0]\ntail = [0, 1, 0]\nradius = 1\n[skin.k]\nshape = \"b\"\nskeleton = \"s\"";
+    BadTrack: "A clip moves something, each part of a node or joint has at most one track in it, joints slide only along axes that have ranges, and only nodes are moved along curves.",
+        "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[clip.c]\nduration = 1" =>
+        "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[[clip.c.track]]\nnode = \"a\"\npath = \"scale\"\nkeys = [{ at = 0, value = 1 }, { at = 1, value = 2 }]";
+    KeyOrder: "Keys stand in the order of their times, at least 0.1 ms apart and within the clip; events lie within the clip too. A curve that is a law of motion runs onward in x.",
+        "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[[clip.c.track]]\nnode = \"a\"\npath = \"scale\"\nkeys = [{ at = 1, value = 1 }, { at = 0, value = 2 }]" =>
+        "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[[clip.c.track]]\nnode = \"a\"\npath = \"scale\"\nkeys = [{ at = 0, value = 2 }, { at = 1, value = 1 }]";
+    KeyValue: "All keys of a track have as many numbers: a translation three, or one along an axis; a rotation one about an axis, three angles, or a quaternion of length 1; a scale one or three.",
+        "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[[clip.c.track]]\nnode = \"a\"\npath = \"rotation\"\nkeys = [{ at = 0, value = 1 }, { at = 1, value = 2 }]" =>
+        "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[[clip.c.track]]\nnode = \"a\"\npath = \"rotation\"\naxis = \"y\"\nkeys = [{ at = 0, value = 1 }, { at = 1, value = 2 }]";
+    NoTime: "A clip lasts from 0 to its duration, or else to its last key. With one key at 0, or with formulas alone, there is no time to move in.",
+        "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[[clip.c.track]]\nnode = \"a\"\npath = \"scale\"\nformula = \"= 1 + t\"" =>
+        "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[clip.c]\nduration = 1\n[[clip.c.track]]\nnode = \"a\"\npath = \"scale\"\nformula = \"= 1 + t\"";
+    BeyondLimit: "A joint turns or slides beyond the range of an axis. A rotation is taken apart into a swing about x, then one about z, then a twist about y, the bone. With `limits = \"clamp\"` in the clip angles are brought into their ranges instead.",
+        "[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.joint.a]\nhead = [0, 0, 0]\ntail = [0, 1, 0]\nlimits = { x = [0, 90] }\n[[clip.c.track]]\njoint = \"a\"\npath = \"rotation\"\naxis = \"x\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 100 }]" =>
+        "[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.joint.a]\nhead = [0, 0, 0]\ntail = [0, 1, 0]\nlimits = { x = [0, 90] }\n[[clip.c.track]]\njoint = \"a\"\npath = \"rotation\"\naxis = \"x\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 80 }]";
+    LoopSeam: "A clip that is played again and again jumps where its end and its start differ.",
+        "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[clip.c]\nloop = true\n[[clip.c.track]]\nnode = \"a\"\npath = \"scale\"\nkeys = [{ at = 0, value = 1 }, { at = 1, value = 2 }]" =>
+        "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[clip.c]\nloop = true\n[[clip.c.track]]\nnode = \"a\"\npath = \"scale\"\nkeys = [{ at = 0, value = 1 }, { at = 1, value = 2 }, { at = 2, value = 1 }]";
+    PastTheEnd: "A node that moves along an open curve at given speeds must not be past its end before the clip is over. On a closed curve it goes round.",
+        "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[clip.c]\nduration = 2\n[[clip.c.track]]\nnode = \"a\"\nalong = { line = { from = [0, 0], to = [1, 0] } }\nspeed = [{ at = 0, value = 1 }]" =>
+        "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[clip.c]\nduration = 2\n[[clip.c.track]]\nnode = \"a\"\nalong = { line = { from = [0, 0], to = [1, 0] } }\nspeed = [{ at = 0, value = 0.5 }]";
+    LooseMotion: "The motion changes faster than it is sampled, or jumps: between two samples a vertex is further from its exact place than the tolerance. Jumps belong into keys with `between = \"step\"`.",
+        "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[clip.c]\nduration = 1\n[[clip.c.track]]\nnode = \"a\"\npath = \"translation\"\naxis = \"x\"\nformula = \"= if(t < 0.503, 0, 1)\"" =>
+        "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[clip.c]\nduration = 1\n[[clip.c.track]]\nnode = \"a\"\npath = \"translation\"\naxis = \"x\"\nbetween = \"step\"\nkeys = [{ at = 0, value = 0 }, { at = 0.503, value = 1 }]";
 }

@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 
 use crate::language::source::Span;
 use crate::language::spec::assertion::Assertion;
+use crate::language::spec::clip::Clip;
 use crate::language::spec::construct::{choices, table};
 use crate::language::spec::curve::Curve;
 use crate::language::spec::field::FieldDefinition;
@@ -14,6 +15,8 @@ use crate::language::spec::material::Material;
 use crate::language::spec::node::Node;
 use crate::language::spec::reference::{CurveReference, MapReference, ShapeReference};
 use crate::language::spec::shape::ShapeDefinition;
+use crate::language::spec::skeleton::Skeleton;
+use crate::language::spec::skin::Skin;
 use crate::language::spec::spanned::Sp;
 
 /// A document with all parameters put in: typed, checked, every name defined, free of cycles.
@@ -27,6 +30,8 @@ pub struct Spec {
     pub up: Up,
     /// How far meshes may lie from true surfaces, in the document's unit.
     pub tolerance: Option<Sp<f64>>,
+    /// How far vertices may be from exact motions, in the document's unit.
+    pub motion_tolerance: Option<Sp<f64>>,
     /// Facts about the asset, for its metadata.
     pub asset: Asset,
     /// `[curve.NAME]`, in the order of the text.
@@ -41,6 +46,12 @@ pub struct Spec {
     pub materials: IndexMap<String, Definition<Material>>,
     /// `[node.NAME]`, in the order of the text.
     pub nodes: IndexMap<String, Definition<Node>>,
+    /// `[skeleton.NAME]`, in the order of the text.
+    pub skeletons: IndexMap<String, Definition<Skeleton>>,
+    /// `[skin.NAME]`, in the order of the text.
+    pub skins: IndexMap<String, Definition<Skin>>,
+    /// `[clip.NAME]`, in the order of the text.
+    pub clips: IndexMap<String, Definition<Clip>>,
     /// The shapes that a document without nodes shows: those that no other definition uses.
     pub roots: Vec<String>,
     /// `[assert]`.

@@ -5,6 +5,7 @@ mod assertion;
 mod bezier_triangle;
 mod bspline;
 mod check;
+mod clip;
 mod combine;
 mod conic;
 mod construct;
@@ -50,6 +51,8 @@ mod scaling;
 mod schema;
 mod section;
 mod shape;
+mod skeleton;
+mod skin;
 mod solid;
 mod solid_expression;
 mod spanned;
@@ -69,6 +72,10 @@ pub use arc::{Arc, CenterArc};
 pub use assertion::{Assertion, Demand, Expected};
 pub use bezier_triangle::BezierTriangles;
 pub use bspline::{BSpline, Nurbs};
+pub use clip::{
+    AngleOrder, Between as KeyBetween, Clip, ClipEvent, ClipTrack, Direction, Formulas, KeyValue, LimitRule,
+    MotionKey, MotionPath, RotationWay,
+};
 pub use combine::{Array, Copy, Group, Mirror, Plane};
 pub use conic::{Conic, ConicForm, Hyperbola, Parabola};
 pub use coons::{Coons, CoonsBlend, CoonsSide, CoonsSideFields, CoonsTwist, Cross, Gordon, GordonBlend};
@@ -113,10 +120,13 @@ pub use profile::{Axis, Bevel, BevelEnds, BevelForm, Extrude, Fill, Revolve};
 pub use quadric::{Quadric, Within};
 pub use reference::{
     CurveReference, Family, FieldReference, MapReference, MaterialName, NodeName, ShapeName, ShapeReference,
+    SkeletonName,
 };
 pub use ruled::{End, Ruled, Translational};
 pub use scaling::{Blend, Factor, ScaleStation, Scaling};
 pub use shape::{Shape, ShapeDefinition, ShapeOptions, Smoothing, Uv};
+pub use skeleton::{AxisRanges, Chain, Joint as SkeletonJoint, MirrorAxis, Skeleton, Socket};
+pub use skin::{Skin, SkinWeight, WeightRule};
 pub use solid::{Cut, Hull, Keep, MinkowskiRound, Shell, SolidFormula, SolidSet, WallSide};
 pub use solid_expression::SolidExpression;
 pub use spanned::Sp;

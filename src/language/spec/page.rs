@@ -11,7 +11,7 @@ use crate::language::spec::whole::ordered;
 use crate::language::value::show_number;
 
 /// The chapters after the first, and the tables that stand in each.
-const CHAPTERS: [(&str, &str, &[&str]); 7] = [
+const CHAPTERS: [(&str, &str, &[&str]); 8] = [
     (
         "Curves",
         "A curve is written `[curve.NAME.KIND]`, or in place where a curve is asked for: `{ circle = { radius = 0.005 } }`.",
@@ -150,6 +150,23 @@ const CHAPTERS: [(&str, &str, &[&str]); 7] = [
     ),
     ("Materials", "", &["material", "texture"]),
     ("Nodes", "A document without nodes shows each shape that no other definition uses.", &["node"]),
+    (
+        "Motion",
+        "A skeleton is written `[skeleton.NAME.joint.JOINT]`, a skin `[skin.NAME]`, a motion `[clip.NAME]` with `[[clip.NAME.track]]`.",
+        &[
+            "skeleton",
+            "joint",
+            "chain",
+            "axis ranges",
+            "socket",
+            "skin",
+            "skin weight",
+            "clip",
+            "track",
+            "key",
+            "event",
+        ],
+    ),
     ("Facts, assertions and limits", "", &["asset", "bounds", "limits"]),
 ];
 

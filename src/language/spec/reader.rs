@@ -163,6 +163,8 @@ impl<'v> Fields<'v> {
         check: Check,
         reader: &mut Reader<'_>,
     ) -> Option<T> {
+        // Rust writes words of its own so.
+        let name = name.strip_prefix("r#").unwrap_or(name);
         let Some(value) = self.raw(name) else {
             let value = default.map(|default| default()).or_else(T::absent);
             if value.is_none() {

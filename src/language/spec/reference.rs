@@ -28,11 +28,27 @@ pub enum Family {
     Material,
     /// `[node.NAME]`.
     Node,
+    /// `[skeleton.NAME]`.
+    Skeleton,
+    /// `[skin.NAME]`.
+    Skin,
+    /// `[clip.NAME]`.
+    Clip,
 }
 
 impl Family {
     /// All families.
-    pub const ALL: [Self; 6] = [Self::Curve, Self::Map, Self::Field, Self::Shape, Self::Material, Self::Node];
+    pub const ALL: [Self; 9] = [
+        Self::Curve,
+        Self::Map,
+        Self::Field,
+        Self::Shape,
+        Self::Material,
+        Self::Node,
+        Self::Skeleton,
+        Self::Skin,
+        Self::Clip,
+    ];
 
     /// The word of headers and messages.
     #[must_use]
@@ -44,6 +60,9 @@ impl Family {
             Self::Shape => "shape",
             Self::Material => "material",
             Self::Node => "node",
+            Self::Skeleton => "skeleton",
+            Self::Skin => "skin",
+            Self::Clip => "clip",
         }
     }
 }
@@ -240,6 +259,10 @@ pub struct ShapeName(pub String);
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeName(pub String);
 
+/// The name of a skeleton.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SkeletonName(pub String);
+
 macro_rules! read_name {
     ($($name:ident: $family:ident = $expected:literal;)+) => {$(
         impl Read for $name {
@@ -270,6 +293,7 @@ read_name! {
     MaterialName: Material = "the name of a material";
     ShapeName: Shape = "the name of a shape";
     NodeName: Node = "the name of a node";
+    SkeletonName: Skeleton = "the name of a skeleton";
 }
 
 fn named(family: Family, name: &str, span: Span, reader: &mut Reader<'_>) -> Sp<String> {

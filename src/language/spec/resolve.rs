@@ -55,7 +55,9 @@ pub(crate) fn resolve(names: &Names, deepest: u32, reader: &mut Reader<'_>) -> V
     for family in Family::ALL {
         Graph::of(family, names, &uses).check(deepest, reader);
     }
-    let shapes = uses.iter().filter(|one| one.family == Family::Shape);
+    // A skin moves a shape, which is shown all the same.
+    let skins = |one: &Use| one.user.as_ref().is_some_and(|(family, _)| *family == Family::Skin);
+    let shapes = uses.iter().filter(|one| one.family == Family::Shape && !skins(one));
     let used: BTreeSet<&str> = shapes.map(|one| one.name.as_str()).collect();
     names.list(Family::Shape).filter(|name| !used.contains(name)).map(str::to_owned).collect()
 }

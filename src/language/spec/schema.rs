@@ -57,7 +57,7 @@ impl Object {
         check: Check,
         schemas: &mut Schemas,
     ) {
-        let name = name.replace('_', "-");
+        let name = name.strip_prefix("r#").unwrap_or(name).replace('_', "-");
         let mut schema = T::schema(schemas);
         check.constrain(&mut schema);
         describe(&mut schema, doc);

@@ -23,10 +23,11 @@ use crate::language::spec::spanned::Sp;
 use crate::language::value::{Data, Entry, Table};
 
 /// Everything that may stand at the top of a document, with what it means.
-pub(crate) const SECTIONS: [(&str, &str); 15] = [
+pub(crate) const SECTIONS: [(&str, &str); 19] = [
     ("unit", "The unit of every length; metres when it is not written."),
     ("up", "The axis that points up; y when it is not written."),
     ("tolerance", "How far meshes may lie from the true surfaces, in the document's unit."),
+    ("motion-tolerance", "How far vertices may be from the exact motion of clips, in the document's unit."),
     ("include", "Documents whose definitions belong to this one; paths are relative to this file."),
     ("asset", "Facts about the asset."),
     ("parameters", "Named values for expressions: numbers, booleans, points, strings."),
@@ -36,6 +37,9 @@ pub(crate) const SECTIONS: [(&str, &str); 15] = [
     ("shape", "Shapes, as `[shape.NAME]` and `[shape.NAME.KIND]`."),
     ("material", "Materials, as `[material.NAME]`."),
     ("node", "Nodes, as `[node.NAME]`. Without any, each shape that no other definition uses is shown."),
+    ("skeleton", "Skeletons, as `[skeleton.NAME.joint.JOINT]`."),
+    ("skin", "Shapes that joints carry, as `[skin.NAME]`."),
+    ("clip", "Motions, as `[clip.NAME]` and `[[clip.NAME.track]]`."),
     (
         "variant",
         "Partial documents, as `[variant.NAME]`: each is laid over this one and bakes one more asset.",
@@ -59,7 +63,8 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
     unknown_sections(table, &mut reader);
     let unit = word(table, "unit", Unit::Metre, &mut reader);
     let up = word(table, "up", Up::Y, &mut reader);
-    let tolerance = tolerance(table, &mut reader);
+    let motion_tolerance = tolerance(table, "motion-tolerance", &mut reader);
+    let tolerance = tolerance(table, "tolerance", &mut reader);
     let asset = table.get("asset").map(|value| reader.within("asset", |reader| Asset::read(value, reader)));
     let limits =
         table.get("limits").map(|value| reader.within("limits", |reader| LimitFields::read(value, reader)));
@@ -71,6 +76,9 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
     let shapes = family(Family::Shape, Shape::NAMES, table, &mut reader);
     let materials = family(Family::Material, &[], table, &mut reader);
     let nodes = family(Family::Node, &[], table, &mut reader);
+    let skeletons = family(Family::Skeleton, &[], table, &mut reader);
+    let skins = family(Family::Skin, &[], table, &mut reader);
+    let clips = family(Family::Clip, &[], table, &mut reader);
     let asserts = table.get("assert").map(|value| read_assertions(value, &mut reader)).unwrap_or_default();
     let roots = resolve(&Names::of(table), limits.recursion, &mut reader);
     let asset = asset.flatten().unwrap_or(Asset { name: None, description: None });
@@ -78,6 +86,7 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
         unit,
         up,
         tolerance,
+        motion_tolerance,
         asset,
         curves,
         maps,
@@ -85,6 +94,9 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
         shapes,
         materials,
         nodes,
+        skeletons,
+        skins,
+        clips,
         roots,
         asserts,
         limits,
@@ -99,9 +111,9 @@ fn word<T: Read>(table: &Table, name: &str, default: T, reader: &mut Reader<'_>)
     read.flatten().unwrap_or(default)
 }
 
-fn tolerance(table: &Table, reader: &mut Reader<'_>) -> Option<Sp<f64>> {
-    let value = table.get("tolerance")?;
-    reader.within("tolerance", |reader| {
+fn tolerance(table: &Table, name: &str, reader: &mut Reader<'_>) -> Option<Sp<f64>> {
+    let value = table.get(name)?;
+    reader.within(name, |reader| {
         let read = Sp::<f64>::read(value, reader);
         read.filter(|_| Check::above(0.0).apply(value, reader))
     })

@@ -4,6 +4,7 @@ use serde_json::{Map, Value as Json, json};
 
 use crate::language::spec::assertion;
 use crate::language::spec::check::Check;
+use crate::language::spec::clip::Clip;
 use crate::language::spec::curve::Curve;
 use crate::language::spec::document::{Asset, Unit};
 use crate::language::spec::field::FieldDefinition;
@@ -16,6 +17,8 @@ use crate::language::spec::reader::Read;
 use crate::language::spec::schema::{ORDER, Schemas};
 use crate::language::spec::section::SECTIONS;
 use crate::language::spec::shape::ShapeDefinition;
+use crate::language::spec::skeleton::Skeleton;
+use crate::language::spec::skin::Skin;
 
 /// What a name looks like.
 const NAME: &str = "^[a-z][a-z0-9]*(-[a-z0-9]+)*$";
@@ -65,7 +68,7 @@ fn section(name: &str, schemas: &mut Schemas) -> Json {
     match name {
         "unit" => with_default(Unit::schema(schemas), Unit::Metre.written()),
         "up" => with_default(Up::schema(schemas), Up::Y.written()),
-        "tolerance" => {
+        "tolerance" | "motion-tolerance" => {
             let mut number = f64::schema(schemas);
             Check::above(0.0).constrain(&mut number);
             number
@@ -79,6 +82,9 @@ fn section(name: &str, schemas: &mut Schemas) -> Json {
         "shape" => named(ShapeDefinition::schema(schemas)),
         "material" => named(Material::schema(schemas)),
         "node" => named(Node::schema(schemas)),
+        "skeleton" => named(Skeleton::schema(schemas)),
+        "skin" => named(Skin::schema(schemas)),
+        "clip" => named(Clip::schema(schemas)),
         "assert" => assertion::schema(schemas),
         "limits" => LimitFields::schema(schemas),
         _ => named(variant(schemas)),

@@ -1,0 +1,119 @@
+"""The file's clips played by numpy from its bytes, as the glTF specification has it, at the times a report names."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from checks.document import Document, local_matrix
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+
+def asked(path: Path) -> dict[str, Any]:
+    """The clips of the report beside a file: what to play, and when. None of its answers are used."""
+    report = path.with_name(f"{path.stem}.report.json")
+    return json.loads(report.read_text(encoding="utf-8")).get("clips", {}) if report.exists() else {}
+
+
+def clips(path: Path) -> dict[str, list[dict[str, Any]]]:
+    """The poses of every clip that the report names."""
+    questions = asked(path)
+    if not questions:
+        return {}
+    stage = Stage(Document(path))
+    named = {one.get("name", ""): one for one in stage.document.json.get("animations", [])}
+    return {
+        name: [stage.pose(named[name], pose) for pose in clip["poses"]]
+        for name, clip in questions.items()
+        if name in named
+    }
+
+
+class Stage:
+    """A file that can be played."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.nodes = document.json["nodes"]
+        self.parents: dict[int, int] = {
+            child: index for index, node in enumerate(self.nodes) for child in node.get("children", [])
+        }
+        self.names = {node.get("name", ""): index for index, node in enumerate(self.nodes)}
+
+    def pose(self, animation: dict[str, Any], question: dict[str, Any]) -> dict[str, Any]:
+        """The scene at a time."""
+        time = question["time"]
+        locals_ = [dict(node) for node in self.nodes]
+        for channel in animation["channels"]:
+            sampler = animation["samplers"][channel["sampler"]]
+            value = self.sample(sampler, channel["target"]["path"], time)
+            locals_[channel["target"]["node"]][channel["target"]["path"]] = value.tolist()
+        worlds = [self.world(index, locals_) for index in range(len(self.nodes))]
+        vertices = {
+            name: self.skinned(name, [v["vertex"] for v in told], worlds) for name, told in question["vertices"].items()
+        }
+        nodes = {name: worlds[self.names[name]].T.ravel().tolist() for name in question["nodes"] if name in self.names}
+        return {"time": time, "nodes": nodes, "vertices": vertices}
+
+    def world(self, index: int, locals_: list[dict[str, Any]]) -> NDArray[np.float64]:
+        """A node's matrix in the scene."""
+        matrix = local_matrix(locals_[index])
+        while (parent := self.parents.get(index)) is not None:
+            matrix = local_matrix(locals_[parent]) @ matrix
+            index = parent
+        return matrix
+
+    def sample(self, sampler: dict[str, Any], path: str, time: float) -> NDArray[np.float64]:
+        """A sampler's value: appendix C of the specification."""
+        times = self.document.accessor(sampler["input"]).astype(float).ravel()
+        values = self.document.accessor(sampler["output"]).astype(float)
+        key = int(np.searchsorted(times, time, side="right")) - 1
+        if key < 0:
+            return values[0]
+        if key + 1 == len(times) or sampler.get("interpolation", "LINEAR") == "STEP":
+            return values[key]
+        share = (time - times[key]) / (times[key + 1] - times[key])
+        start, end = values[key], values[key + 1]
+        if path != "rotation":
+            return start + (end - start) * share
+        dot = float(np.dot(start, end))
+        angle = np.arccos(min(abs(dot), 1.0))
+        if angle < 1e-6:
+            mixed = start * (1 - share) + np.copysign(1.0, dot) * end * share
+        else:
+            mixed = (
+                np.sin(angle * (1 - share)) * start + np.copysign(1.0, dot) * np.sin(angle * share) * end
+            ) / np.sin(angle)
+        return mixed / np.linalg.norm(mixed)
+
+    def skinned(self, mesh: str, vertices: list[int], worlds: list[NDArray[np.float64]]) -> list[list[float]]:
+        """Where vertices of a skinned mesh are."""
+        index = next(i for i, one in enumerate(self.document.json["meshes"]) if one.get("name") == mesh)
+        node = next(one for one in self.nodes if one.get("mesh") == index and "skin" in one)
+        skin = self.document.json["skins"][node["skin"]]
+        binds = self.document.accessor(skin["inverseBindMatrices"]).astype(float).reshape(-1, 4, 4).transpose(0, 2, 1)
+        maps = np.array([worlds[joint] @ bind for joint, bind in zip(skin["joints"], binds, strict=True)])
+        attributes = self.document.meshes[index].surfaces[0].attributes
+        places = attributes["POSITION"][vertices].astype(float)
+        joints = attributes["JOINTS_0"][vertices].astype(int)
+        weights = attributes["WEIGHTS_0"][vertices].astype(float) / 255.0
+        points = np.concatenate([places, np.ones((len(vertices), 1))], axis=1)
+        return np.einsum("vi,vijk,vk->vj", weights, maps[joints], points)[:, :3].tolist()
+
+
+def weight_faults(document: Document) -> int:
+    """Vertices whose written weights do not sum to exactly 255, or that name a joint with no weight."""
+    faults = 0
+    for mesh in document.meshes:
+        for primitive in mesh.surfaces:
+            if "WEIGHTS_0" in primitive.attributes:
+                weights = primitive.attributes["WEIGHTS_0"].astype(int)
+                joints = primitive.attributes["JOINTS_0"].astype(int)
+                faults += int((weights.sum(axis=1) != 255).sum()) + int(((weights == 0) & (joints != 0)).sum())
+    return faults

@@ -1,0 +1,62 @@
+//! What is said of skins and clips that cannot be made as they are asked for.
+
+use super::place;
+use crate::build::Built;
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::Span;
+use crate::model::{ShapeHandle, WeightRule};
+use crate::realize::{Loose, RealizeError};
+
+/// The diagnostic for a skin that has no weights; none for other errors.
+pub(super) fn refused(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Option<Diagnostic> {
+    let name = &built.model.shape(shape).name;
+    let (skin, message) = match error {
+        RealizeError::SkinnedWire { skin } => (
+            *skin,
+            format!("shape `{name}` cannot be skinned: it has lines, and joints carry triangles alone"),
+        ),
+        RealizeError::Unweighted { skin, count, of, place, distance } => {
+            let [x, y, z] = place.to_array().map(short);
+            let distance = short(*distance);
+            (
+                *skin,
+                format!(
+                    "{count} of the {of} points of shape `{name}` are carried by no joint, one of them at [{x}, {y}, {z}], {distance} from the nearest bone"
+                ),
+            )
+        }
+        _ => return None,
+    };
+    let span = built.skin_places.get(skin).copied().unwrap_or(Span::NONE);
+    let report = Diagnostic::error(Code::Unweighted, message)
+        .at(span, "this skin")
+        .also(place(built, shape), "this shape");
+    Some(match (&built.model.skins[skin].rule, error) {
+        (_, RealizeError::SkinnedWire { .. }) => {
+            report.help("draw a thin profile along its curves with `sweep`")
+        }
+        (WeightRule::Explicit(_), _) => report.help("write formulas that are greater than 0 there"),
+        _ => report
+            .help("write a greater `radius` or `falloff` for the joints near it, or `weights = \"rigid\"`"),
+    })
+}
+
+/// The warning for a motion that is not within its tolerance.
+pub(super) fn loose(built: &Built, one: &Loose) -> Diagnostic {
+    let clip = &built.model.clips[one.clip];
+    let span = built.clip_places.get(one.clip).copied().unwrap_or(Span::NONE);
+    let message = format!(
+        "clip `{}` is written up to {:.3e} m from its exact motion, more than its tolerance of {:.3e} m",
+        clip.name, one.bound, one.tolerance
+    );
+    Diagnostic::warning(Code::LooseMotion, message)
+        .at(span, "this clip")
+        .note("where a motion jumps or changes faster than it is sampled, more keys do not come nearer")
+        .help("write a higher `rate`, a coarser `tolerance`, or jumps as keys with `between = \"step\"`")
+}
+
+/// A number with few digits.
+fn short(number: f64) -> String {
+    let rounded: f64 = format!("{number:.4e}").parse().unwrap_or(number);
+    rounded.to_string()
+}

@@ -1,0 +1,184 @@
+//! Skins and animations into glTF.
+//!
+//! Times that several channels of a clip share are one accessor, and so are equal inverse bind matrices of several skins.
+
+use gltf::json::accessor::{ComponentType, Type};
+use gltf::json::animation::{Channel, Interpolation, Property, Sampler, Target};
+use gltf::json::validation::Checked as Valid;
+use gltf::json::{Accessor, Animation, Index, Root, Skin, Value};
+use serde_json::json;
+
+use super::buffer::{Binary, Elements, accessor};
+use super::write::put;
+use crate::geometry::mesh;
+use crate::geometry::number::single;
+use crate::motion::Path;
+use crate::scene::{self, Geometry, Scene};
+
+/// Joints and weights of a geometry, written.
+pub(super) struct Carried {
+    pub(super) joints: Index<Accessor>,
+    pub(super) weights: Index<Accessor>,
+}
+
+/// Writes the joints and weights of each vertex; none where a geometry has none.
+pub(super) fn carried(root: &mut Root, binary: &mut Binary, geometry: &Geometry) -> Option<Carried> {
+    let influences = geometry.influences.as_ref()?;
+    let elements =
+        || Elements { component: ComponentType::U8, shape: Type::Vec4, count: geometry.mesh.vertices.len() };
+    let of = |vertex: &mesh::Vertex| influences[vertex.point.subscript()];
+    let joints = binary.attribute(root, elements(), |bytes| {
+        for vertex in &geometry.mesh.vertices {
+            bytes.extend(of(vertex).map(|influence| influence.joint));
+        }
+    });
+    let weights = binary.attribute(root, elements(), |bytes| {
+        for vertex in &geometry.mesh.vertices {
+            bytes.extend(of(vertex).map(|influence| influence.weight));
+        }
+    });
+    root.accessors[weights.value()].normalized = true;
+    Some(Carried { joints, weights })
+}
+
+/// Writes all skins.
+pub(super) fn skins(root: &mut Root, binary: &mut Binary, scene: &Scene) {
+    let mut written: Vec<(&scene::Skin, Index<Accessor>)> = Vec::new();
+    for skin in &scene.skins {
+        let known = written.iter().find(|(other, _)| other.inverse_bind == skin.inverse_bind);
+        let matrices = match known {
+            Some((_, accessor)) => *accessor,
+            None => {
+                let start = binary.start();
+                for map in &skin.inverse_bind {
+                    put(&mut binary.bytes, glam::DMat4::from(*map).as_mat4().to_cols_array());
+                }
+                let view = binary.view(root, start, None);
+                let count = skin.inverse_bind.len();
+                let elements = Elements { component: ComponentType::F32, shape: Type::Mat4, count };
+                let accessor = root.push(accessor(view, 0, elements, None));
+                written.push((skin, accessor));
+                accessor
+            }
+        };
+        root.push(Skin {
+            extensions: None,
+            extras: None,
+            inverse_bind_matrices: Some(matrices),
+            joints: skin.joints.iter().map(|joint| Index::new(mesh::index(*joint))).collect(),
+            name: Some(skin.name.clone()),
+            skeleton: Some(Index::new(mesh::index(skin.root))),
+        });
+    }
+}
+
+/// Writes all animations.
+pub(super) fn animations(root: &mut Root, binary: &mut Binary, scene: &Scene) {
+    for animation in &scene.animations {
+        let mut inputs: Vec<(&[f64], Index<Accessor>)> = Vec::new();
+        let mut samplers = Vec::new();
+        let mut channels = Vec::new();
+        for channel in &animation.channels {
+            let known = inputs.iter().find(|(times, _)| *times == channel.times.as_slice());
+            let input = match known {
+                Some((_, accessor)) => *accessor,
+                None => {
+                    let accessor = times(root, binary, &channel.times);
+                    inputs.push((&channel.times, accessor));
+                    accessor
+                }
+            };
+            let sampler = Index::new(mesh::index(samplers.len()));
+            samplers.push(Sampler {
+                extensions: None,
+                extras: None,
+                input,
+                interpolation: Valid::Valid(if channel.stepped {
+                    Interpolation::Step
+                } else {
+                    Interpolation::Linear
+                }),
+                output: values(root, binary, channel),
+            });
+            channels.push(target(channel, sampler));
+        }
+        root.push(Animation {
+            extensions: None,
+            extras: extras(animation),
+            channels,
+            name: Some(animation.name.clone()),
+            samplers,
+        });
+    }
+}
+
+fn target(channel: &scene::Channel, sampler: Index<Sampler>) -> Channel {
+    Channel {
+        sampler,
+        target: Target {
+            extensions: None,
+            extras: None,
+            node: Index::new(mesh::index(channel.node)),
+            path: Valid::Valid(match channel.path {
+                Path::Translation => Property::Translation,
+                Path::Rotation => Property::Rotation,
+                Path::Scale => Property::Scale,
+            }),
+        },
+        extensions: None,
+        extras: None,
+    }
+}
+
+fn times(root: &mut Root, binary: &mut Binary, times: &[f64]) -> Index<Accessor> {
+    let start = binary.start();
+    times.iter().for_each(|time| put(&mut binary.bytes, [single(*time)]));
+    let view = binary.view(root, start, None);
+    let elements = Elements { component: ComponentType::F32, shape: Type::Scalar, count: times.len() };
+    let mut made = accessor(view, 0, elements, None);
+    let bound = |time: Option<&f64>| time.map(|time| Value::from(vec![single(*time)]));
+    made.min = bound(times.first());
+    made.max = bound(times.last());
+    root.push(made)
+}
+
+fn values(root: &mut Root, binary: &mut Binary, channel: &scene::Channel) -> Index<Accessor> {
+    let start = binary.start();
+    let wide = channel.path == Path::Rotation;
+    for value in &channel.values {
+        let value = value.as_vec4();
+        if wide {
+            put(&mut binary.bytes, value.to_array());
+        } else {
+            put(&mut binary.bytes, value.truncate().to_array());
+        }
+    }
+    let view = binary.view(root, start, None);
+    let shape = if wide { Type::Vec4 } else { Type::Vec3 };
+    let elements = Elements { component: ComponentType::F32, shape, count: channel.values.len() };
+    root.push(accessor(view, 0, elements, None))
+}
+
+/// The mark of a socket.
+pub(super) fn socket() -> gltf::json::Extras {
+    serde_json::value::to_raw_value(&json!({ "socket": true })).ok()
+}
+
+/// What a game may want to know of a clip and glTF has no place for.
+fn extras(animation: &scene::Animation) -> gltf::json::Extras {
+    let mut object = serde_json::Map::new();
+    if animation.looped {
+        object.insert("loop".to_owned(), json!(true));
+    }
+    if !animation.events.is_empty() {
+        let event = |(time, name): &(f64, String)| json!({ "time": time, "name": name });
+        object.insert("events".to_owned(), animation.events.iter().map(event).collect());
+    }
+    if let Some((min, max)) = animation.reach {
+        // A hair wider than the samples, for what rounding to single precision adds.
+        let margin = animation.bound + 1e-6 * min.abs().max(max.abs()).max_element();
+        let (min, max) = (min - margin, max + margin);
+        object.insert("bounds".to_owned(), json!({ "min": min.to_array(), "max": max.to_array() }));
+    }
+    serde_json::value::to_raw_value(&object).ok().filter(|_| !object.is_empty())
+}

@@ -1,0 +1,159 @@
+//! The skins and animations in the bytes of a `.glb` file, for the report.
+//!
+//! Reads what our own writer writes: joints and weights of one byte, float matrices, keys that step or run straight.
+
+use glam::{DMat4, DVec4, Mat4, Vec4};
+use gltf::json::accessor::{ComponentType, Type};
+use gltf::json::animation::{Interpolation, Property};
+use gltf::json::mesh::Semantic;
+use gltf::json::validation::Checked;
+use gltf::json::{Accessor, Index};
+
+use super::read::{Read, ReadError, elements, kind};
+use crate::motion::Path;
+
+/// A skin of a file.
+#[derive(Clone, Debug)]
+pub struct ReadSkin {
+    /// Indices of nodes.
+    pub joints: Vec<usize>,
+    /// For each joint its inverse bind matrix.
+    pub inverse_bind: Vec<DMat4>,
+}
+
+/// A vertex's joints and weights, which sum to 1.
+pub type ReadInfluences = [(usize, f64); 4];
+
+/// An animation of a file.
+#[derive(Clone, Debug)]
+pub struct ReadAnimation {
+    /// Its channels.
+    pub channels: Vec<ReadChannel>,
+}
+
+/// A channel of an animation.
+#[derive(Clone, Debug)]
+pub struct ReadChannel {
+    /// The node.
+    pub node: usize,
+    /// Which part of it.
+    pub path: Path,
+    /// Whether values stay until the next key.
+    pub stepped: bool,
+    /// Seconds.
+    pub times: Vec<f64>,
+    /// Values.
+    pub values: Vec<DVec4>,
+}
+
+impl Read<'_> {
+    /// The skins of a file.
+    ///
+    /// # Errors
+    /// When they are broken or not written as ours are.
+    pub fn skins(&self) -> Result<Vec<ReadSkin>, ReadError> {
+        let skin = |skin: &gltf::json::Skin| {
+            let matrices = skin.inverse_bind_matrices;
+            let matrices = matrices.ok_or_else(|| ReadError::Missing("inverse bind matrices".to_owned()))?;
+            let rows = self.floats::<16>(matrices, Type::Mat4)?;
+            let matrix = |row: &[f32; 16]| Mat4::from_cols_array(row).as_dmat4();
+            Ok(ReadSkin {
+                joints: skin.joints.iter().map(|joint| joint.value()).collect(),
+                inverse_bind: rows.iter().map(matrix).collect(),
+            })
+        };
+        self.root.skins.iter().map(skin).collect()
+    }
+
+    /// The joints and weights of a mesh's vertices; none where it has none.
+    ///
+    /// # Errors
+    /// When they are broken or not written as ours are.
+    pub fn influences(&self, mesh: usize) -> Result<Option<Vec<ReadInfluences>>, ReadError> {
+        let primitives = &self.root.meshes[mesh].primitives;
+        let named = |semantic: Semantic| {
+            primitives
+                .iter()
+                .find_map(|primitive| primitive.attributes.get(&Checked::Valid(semantic.clone())))
+        };
+        let (Some(joints), Some(weights)) = (named(Semantic::Joints(0)), named(Semantic::Weights(0))) else {
+            return Ok(None);
+        };
+        let (joints, weights) = (self.bytes(*joints)?, self.bytes(*weights)?);
+        let pair = |(joints, weights): (&[u8; 4], &[u8; 4])| {
+            core::array::from_fn(|place| (usize::from(joints[place]), f64::from(weights[place]) / 255.0))
+        };
+        Ok(Some(joints.iter().zip(&weights).map(pair).collect()))
+    }
+
+    /// The animations of a file.
+    ///
+    /// # Errors
+    /// When they are broken or not written as ours are.
+    pub fn animations(&self) -> Result<Vec<ReadAnimation>, ReadError> {
+        self.root.animations.iter().map(|animation| self.animation(animation)).collect()
+    }
+
+    fn animation(&self, animation: &gltf::json::Animation) -> Result<ReadAnimation, ReadError> {
+        let channel = |channel: &gltf::json::animation::Channel| {
+            let unsupported = |what: &str| ReadError::Unsupported(what.to_owned());
+            let sampler = animation.samplers.get(channel.sampler.value());
+            let sampler = sampler.ok_or_else(|| ReadError::Missing("a sampler".to_owned()))?;
+            let path = match channel.target.path {
+                Checked::Valid(Property::Translation) => Path::Translation,
+                Checked::Valid(Property::Rotation) => Path::Rotation,
+                Checked::Valid(Property::Scale) => Path::Scale,
+                _ => return Err(unsupported("an animated property")),
+            };
+            let stepped = match sampler.interpolation {
+                Checked::Valid(Interpolation::Step) => true,
+                Checked::Valid(Interpolation::Linear) => false,
+                _ => return Err(unsupported("a cubic sampler")),
+            };
+            let times = self.floats::<1>(sampler.input, Type::Scalar)?;
+            let values: Vec<DVec4> = if path == Path::Rotation {
+                let rows = self.floats::<4>(sampler.output, Type::Vec4)?;
+                rows.into_iter().map(|row| Vec4::from_array(row).as_dvec4()).collect()
+            } else {
+                let rows = self.floats::<3>(sampler.output, Type::Vec3)?;
+                rows.into_iter().map(|[x, y, z]| Vec4::new(x, y, z, 0.0).as_dvec4()).collect()
+            };
+            if values.len() != times.len() || times.is_empty() {
+                return Err(ReadError::Missing("a value of an animation".to_owned()));
+            }
+            Ok(ReadChannel {
+                node: channel.target.node.value(),
+                path,
+                stepped,
+                times: times.into_iter().map(|[time]| f64::from(time)).collect(),
+                values,
+            })
+        };
+        let channels: Result<Vec<_>, _> = animation.channels.iter().map(channel).collect();
+        Ok(ReadAnimation { channels: channels? })
+    }
+
+    fn floats<const N: usize>(
+        &self,
+        index: Index<Accessor>,
+        shape: Type,
+    ) -> Result<Vec<[f32; N]>, ReadError> {
+        if kind(&self.root, index) != Some((ComponentType::F32, shape)) {
+            return Err(ReadError::Unsupported(format!("accessor {} as numbers", index.value())));
+        }
+        let found = elements(&self.root, self.binary, index, 4 * N)?;
+        let row = |element: &[u8]| {
+            let (words, _) = element.as_chunks::<4>();
+            core::array::from_fn(|column| f32::from_le_bytes(words[column]))
+        };
+        Ok(found.each(self.binary).map(row).collect())
+    }
+
+    fn bytes(&self, index: Index<Accessor>) -> Result<Vec<[u8; 4]>, ReadError> {
+        if kind(&self.root, index) != Some((ComponentType::U8, Type::Vec4)) {
+            return Err(ReadError::Unsupported(format!("accessor {} as joints or weights", index.value())));
+        }
+        let found = elements(&self.root, self.binary, index, 4)?;
+        Ok(found.each(self.binary).map(|element| element.as_chunks::<4>().0[0]).collect())
+    }
+}

@@ -1,0 +1,315 @@
+//! Clips: what moves, and how.
+
+use glam::{DVec3, DVec4};
+use serde_json::{Value as Json, json};
+
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::Span;
+use crate::language::spec::check::Check;
+use crate::language::spec::construct::{choices, table};
+use crate::language::spec::formula::Formula;
+use crate::language::spec::kind::choice;
+use crate::language::spec::point::read_numbers;
+use crate::language::spec::reader::{Read, Reader};
+use crate::language::spec::reference::{CurveReference, NodeName, SkeletonName};
+use crate::language::spec::scalar::finite;
+use crate::language::spec::schema::{Schemas, any_of, numbers, one_of_words, or_expression};
+use crate::language::spec::spanned::Sp;
+use crate::language::value::{Data, Value};
+
+/// The longest clip, seconds.
+const LONGEST: f64 = 3600.0;
+
+table! {
+    /// A motion: tracks that move nodes and joints over time. It is sampled and written with so few keys that no skinned
+    /// vertex is further than `tolerance` from the exact motion, in players that turn on the sphere and in those that
+    /// turn by straight lines.
+    "clip" pub Clip {
+        /// The skeleton of the tracks' joints; not needed where the document has one.
+        skeleton: Option<Sp<SkeletonName>>;
+        /// Seconds; until the last key or the end of the last curve of values when it is not written.
+        duration: Option<Sp<f64>> => Check::at_least(0.0).up_to(LONGEST);
+        /// Whether it is played again and again: it must end as it begins.
+        r#loop: Sp<bool> = false;
+        /// How far a vertex may be from the exact motion, in the document's unit. When it is not written, the document's
+        /// `motion-tolerance` holds, else the diagonal of the bounding box / 10000.
+        tolerance: Option<Sp<f64>> => Check::above(0.0);
+        /// Samples a second of the exact motion, to begin with.
+        rate: Sp<f64> = 60.0 => Check::within(1.0, 1000.0);
+        /// What becomes of poses beyond the limits of joints.
+        limits: Sp<LimitRule> = LimitRule::Error;
+        /// What moves, as `[[clip.NAME.track]]`.
+        track: Vec<Sp<ClipTrack>> = Vec::new();
+        /// What happens at some time, as `[[clip.NAME.event]]`; for the game, in the animation's extras.
+        event: Vec<ClipEvent> = Vec::new();
+    }
+}
+
+choices! {
+    /// What becomes of poses beyond the limits of joints.
+    LimitRule {
+        /// They are errors.
+        Error = "error";
+        /// Each angle is brought into its range.
+        Clamp = "clamp";
+    }
+}
+
+table! {
+    /// The motion of one part of a node or joint, on top of its rest: translations are added (for joints in the rest frame),
+    /// rotations are applied before the rest's own, scales are multiplied.
+    "track" pub ClipTrack {
+        /// The node.
+        node: Option<Sp<NodeName>>;
+        /// The joint.
+        joint: Option<Sp<String>>;
+        /// The chain all of whose joints move by one `formula`; in it u runs from 0 at the first joint to 1 at the last.
+        chain: Option<Sp<String>>;
+        /// The part that moves. A track `along` a curve needs none.
+        path: Option<Sp<MotionPath>>;
+        /// Values at times, each `{ at = seconds, value = ... }`. Translations: three numbers in the document's unit, or one
+        /// with `axis`. Rotations: degrees with `axis`; three angles in degrees; or a quaternion `[x, y, z, w]`. Scales: a
+        /// number or three. With `along`: the share of the curve's length.
+        keys: Vec<MotionKey> = Vec::new();
+        /// How values go from key to key.
+        between: Sp<Between> = Between::Linear;
+        /// Formulas of the time t in seconds, in place of keys: one, or a list of three.
+        formula: Option<Formulas>;
+        /// A plane curve in place of keys: x is the time in seconds, y the value. It must run onward in x.
+        curve: Option<CurveReference>;
+        /// The axis of a turn or translation by one number: "x", "y", "z" or a direction.
+        axis: Option<Sp<Direction>>;
+        /// The order in which three angles are applied, each about an axis that stands still. When it is not written, "xyz" for
+        /// nodes and "yzx" for joints, which is the order of their limits.
+        order: Option<Sp<AngleOrder>>;
+        /// What is between keys of angles.
+        way: Sp<RotationWay> = RotationWay::Angles;
+        /// A curve that a node is moved along by its length. Without keys, formula or speed: once, at constant speed.
+        along: Option<CurveReference>;
+        /// Whether a node that is moved along a curve turns with it: its z looks along the curve, its y is up. The frames turn no
+        /// more than the curve makes them.
+        orient: Sp<bool> = true;
+        /// The direction that stays up along the curve, where that is wanted instead.
+        up: Option<Sp<DVec3>>;
+        /// Speeds along the curve in the document's unit a second, each `{ at = seconds, value = ... }`, changing evenly between.
+        speed: Vec<MotionKey> = Vec::new();
+    }
+    checked check
+}
+
+choices! {
+    /// Which part of a node or joint moves.
+    MotionPath {
+        /// Where it is.
+        Translation = "translation";
+        /// How it is turned.
+        Rotation = "rotation";
+        /// Its size.
+        Scale = "scale";
+    }
+}
+
+choices! {
+    /// How values go from key to key.
+    Between {
+        /// They stay until the next key.
+        Step = "step";
+        /// Straight, or the shorter way round.
+        Linear = "linear";
+        /// Smoothly, by cubics with the slopes of the keys.
+        Cubic = "cubic";
+    }
+}
+
+choices! {
+    /// What is between keys of a rotation by angles. Quaternions always go the shorter way.
+    RotationWay {
+        /// Angles change each by itself, over any number of turns.
+        Angles = "angles";
+        /// The shorter way from rotation to rotation.
+        Shortest = "shortest";
+    }
+}
+
+choices! {
+    /// The order of three angles.
+    AngleOrder {
+        /// About x, then y, then z.
+        Xyz = "xyz";
+        /// About x, then z, then y.
+        Xzy = "xzy";
+        /// About y, then x, then z.
+        Yxz = "yxz";
+        /// About y, then z, then x.
+        Yzx = "yzx";
+        /// About z, then x, then y.
+        Zxy = "zxy";
+        /// About z, then y, then x.
+        Zyx = "zyx";
+    }
+}
+
+table! {
+    /// A value at a time.
+    "key" pub MotionKey {
+        /// Seconds from the start of the clip.
+        at: Sp<f64> => Check::at_least(0.0).up_to(LONGEST);
+        /// The value: a number, or a list of three or four.
+        value: Sp<KeyValue>;
+        /// How fast the value changes there, in its unit a second, between "cubic" keys; by the neighbours when it is not
+        /// written.
+        slope: Option<Sp<KeyValue>>;
+    }
+}
+
+table! {
+    /// Something that happens at a time.
+    "event" pub ClipEvent {
+        /// Seconds from the start of the clip.
+        at: Sp<f64> => Check::at_least(0.0).up_to(LONGEST);
+        /// What happens.
+        name: Sp<String>;
+    }
+}
+
+/// One number, or three or four.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KeyValue {
+    /// The numbers; those that are not written are 0.
+    pub numbers: DVec4,
+    /// How many are written.
+    pub count: usize,
+}
+
+impl Read for KeyValue {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        if value.number().is_some() {
+            return finite(value, reader)
+                .map(|one| Self { numbers: DVec4::new(one, 0.0, 0.0, 0.0), count: 1 });
+        }
+        let read = read_numbers(value, 3, 4, "a number or a list of 3 or 4 numbers", reader)?;
+        let last = read.get(3).copied().unwrap_or(0.0);
+        Some(Self { numbers: DVec4::new(read[0], read[1], read[2], last), count: read.len() })
+    }
+
+    fn schema(_: &mut Schemas) -> Json {
+        any_of(vec![or_expression("number"), numbers(3, 4)])
+    }
+}
+
+/// One formula or several.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Formulas(pub Vec<Sp<Formula>>);
+
+impl Formulas {
+    /// Where the first is written.
+    #[must_use]
+    pub fn span(&self) -> Span {
+        self.0.first().map_or(Span::NONE, |formula| formula.span)
+    }
+}
+
+impl Read for Formulas {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        if let Data::Array(items) = &value.data {
+            if items.len() != 3 {
+                let message =
+                    format!("{} must be a formula or 3 of them, found {}", reader.place(), items.len());
+                reader.report(Diagnostic::error(Code::WrongLength, message).at(value.span, "not 3"));
+                return None;
+            }
+            return Vec::<Sp<Formula>>::read(value, reader).map(Self);
+        }
+        Sp::<Formula>::read(value, reader).map(|formula| Self(vec![formula]))
+    }
+
+    fn schema(schemas: &mut Schemas) -> Json {
+        let one = Formula::schema(schemas);
+        any_of(vec![one.clone(), json!({ "type": "array", "items": one, "minItems": 3, "maxItems": 3 })])
+    }
+}
+
+/// A direction: the letter of an axis, or three numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Direction(pub DVec3);
+
+impl Read for Direction {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        if let Data::String(_) = &value.data {
+            return choice(value, &["x", "y", "z"], reader).map(|letter| {
+                Self(match letter {
+                    "x" => DVec3::X,
+                    "y" => DVec3::Y,
+                    _ => DVec3::Z,
+                })
+            });
+        }
+        let read = read_numbers(value, 3, 3, "\"x\", \"y\", \"z\" or three numbers", reader)?;
+        let direction = DVec3::new(read[0], read[1], read[2]);
+        if direction == DVec3::ZERO {
+            let message = format!("{} must be a direction, found [0, 0, 0]", reader.place());
+            reader.report(Diagnostic::error(Code::OutOfRange, message).at(value.span, "no direction"));
+            return None;
+        }
+        Some(Self(direction.normalize()))
+    }
+
+    fn schema(_: &mut Schemas) -> Json {
+        let mut alternatives = one_of_words(&["x", "y", "z"]);
+        alternatives.push(numbers(3, 3));
+        any_of(alternatives)
+    }
+}
+
+impl ClipTrack {
+    fn check(&self, table: Span, reader: &mut Reader<'_>) -> bool {
+        let targets = [
+            self.node.as_ref().map(|node| ("node", node.span)),
+            self.joint.as_ref().map(|joint| ("joint", joint.span)),
+            self.chain.as_ref().map(|chain| ("chain", chain.span)),
+        ];
+        let laws = [
+            self.keys.first().map(|key| ("keys", key.at.span)),
+            self.formula.as_ref().map(|formula| ("formula", formula.span())),
+            self.curve.as_ref().map(|curve| ("curve", curve.span())),
+            self.speed.first().map(|key| ("speed", key.at.span)),
+        ];
+        let targeted = one_of(&targets, ("what moves", "`node`, `joint` or `chain`"), (table, false), reader);
+        let free = self.along.is_some();
+        let ruled = one_of(&laws, ("how it moves", "`keys`, `formula` or `curve`"), (table, free), reader);
+        let report = match (&self.along, &self.path) {
+            (None, None) => Diagnostic::error(Code::MissingField, "missing field `path` of track")
+                .at(table, "needs `path`"),
+            (Some(along), Some(path)) if path.value != MotionPath::Translation => {
+                Diagnostic::error(Code::Conflict, "a track along a curve moves the translation")
+                    .at(path.span, "cannot stand beside `along`")
+                    .also(along.span(), "the curve")
+            }
+            _ => return targeted && ruled,
+        };
+        reader.report(report);
+        false
+    }
+}
+
+/// Whether exactly one of several fields is written; none will do where the track is `free`.
+fn one_of(
+    fields: &[Option<(&str, Span)>],
+    (what, list): (&str, &str),
+    (table, free): (Span, bool),
+    reader: &mut Reader<'_>,
+) -> bool {
+    let written: Vec<_> = fields.iter().flatten().collect();
+    let report = match written.as_slice() {
+        [_] => return true,
+        [] if free => return true,
+        [] => Diagnostic::error(Code::MissingField, format!("missing {list} of track"))
+            .at(table, format!("{what} is not said")),
+        [(one, first), (other, second), ..] => {
+            let message = format!("`{one}` and `{other}` both say {what}");
+            Diagnostic::error(Code::Conflict, message).at(*second, "said again").also(*first, "said here")
+        }
+    };
+    reader.report(report);
+    false
+}

@@ -1,0 +1,74 @@
+//! Skins: which joints carry which parts of a shape.
+
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::Span;
+use crate::language::spec::check::Check;
+use crate::language::spec::construct::{choices, table};
+use crate::language::spec::formula::Formula;
+use crate::language::spec::reader::Reader;
+use crate::language::spec::reference::{ShapeName, SkeletonName};
+use crate::language::spec::spanned::Sp;
+
+table! {
+    /// A shape that moves with the joints of a skeleton. At most four joints carry a vertex; written weights sum to exactly
+    /// 255. The node that shows the shape must stand where the document's origin is: the skeleton carries it.
+    "skin" pub Skin {
+        /// The name of the shape.
+        shape: Sp<ShapeName>;
+        /// The name of the skeleton.
+        skeleton: Sp<SkeletonName>;
+        /// How weights are found.
+        weights: Sp<WeightRule> = WeightRule::Envelope;
+        /// The joints that carry; all when it is not written. A chain's name stands for all of its joints.
+        joints: Vec<Sp<String>> = Vec::new();
+        /// How often the weights of each vertex are brought nearer to those of its neighbours.
+        smoothing: Sp<u32> = 0_u32 => Check::within(0.0, 100.0);
+        /// The weights of each joint, for "explicit", as `[[skin.NAME.weight]]`.
+        weight: Vec<SkinWeight> = Vec::new();
+    }
+    checked check
+}
+
+choices! {
+    /// How the weights of a skin are found.
+    WeightRule {
+        /// Each vertex wholly with the nearest bone.
+        Rigid = "rigid";
+        /// By the distance to the bones: wholly within `radius` of a joint, less and less over its `falloff`.
+        Envelope = "envelope";
+        /// By the formulas of `weight`.
+        Explicit = "explicit";
+    }
+}
+
+table! {
+    /// The weight of a joint at each place of a shape at rest.
+    "skin weight" pub SkinWeight {
+        /// The joint.
+        joint: Sp<String>;
+        /// The weight, a formula of x, y and z in the document's unit and axes; below 0 it counts as 0. The weights of
+        /// all joints together are brought to the sum 1.
+        formula: Sp<Formula>;
+    }
+}
+
+impl Skin {
+    fn check(&self, table: Span, reader: &mut Reader<'_>) -> bool {
+        let explicit = self.weights.value == WeightRule::Explicit;
+        let report = match self.weight.first() {
+            None if explicit => Diagnostic::error(Code::MissingField, "missing field `weight` of skin")
+                .at(table, "no weight of any joint")
+                .help("write `[[skin.NAME.weight]]` with `joint` and `formula = \"= ...\"` for each joint"),
+            Some(weight) if !explicit => {
+                let message =
+                    format!("weights \"{}\" are found, and `weight` gives them", self.weights.value.text());
+                Diagnostic::error(Code::Conflict, message)
+                    .at(weight.joint.span, "given here")
+                    .help("write `weights = \"explicit\"`, or leave `weight` out")
+            }
+            _ => return true,
+        };
+        reader.report(report);
+        false
+    }
+}

@@ -1,0 +1,171 @@
+//! What moves: skeletons, skins and clips, in metres with y up.
+
+use glam::{DQuat, DVec3, DVec4};
+
+use super::{Frame, ShapeHandle};
+use crate::geometry::formula::Formula;
+use crate::motion::{Course, Envelope, Limits, Path, Range, Skeleton, Transform};
+
+/// A skeleton of the document.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedSkeleton {
+    /// Its name.
+    pub name: String,
+    /// Its joints.
+    pub skeleton: Skeleton,
+    /// For each joint how far it carries, for envelopes.
+    pub envelopes: Vec<Envelope>,
+    /// Named places on its joints.
+    pub sockets: Vec<Socket>,
+    /// Index of the node that carries it in [`Model::nodes`](super::Model::nodes).
+    pub parent: Option<usize>,
+}
+
+/// A named place on a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Socket {
+    /// Its name.
+    pub name: String,
+    /// The joint.
+    pub joint: usize,
+    /// Where it is in the joint's rest frame.
+    pub place: Transform,
+}
+
+/// A socket of a skeleton.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SocketHandle {
+    /// Index in [`Model::skeletons`](super::Model::skeletons).
+    pub skeleton: usize,
+    /// Index of the socket.
+    pub socket: usize,
+}
+
+/// A shape that joints carry.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Skin {
+    /// Its name.
+    pub name: String,
+    /// The shape.
+    pub shape: ShapeHandle,
+    /// Index in [`Model::skeletons`](super::Model::skeletons).
+    pub skeleton: usize,
+    /// The joints that may carry, increasing.
+    pub joints: Vec<usize>,
+    /// How weights are found.
+    pub rule: WeightRule,
+    /// Rounds of smoothing.
+    pub smoothing: u32,
+}
+
+/// How the weights of a skin are found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WeightRule {
+    /// Wholly with the nearest bone.
+    Rigid,
+    /// By envelopes.
+    Envelope,
+    /// For each of the skin's joints a formula of x, y and z in the document's unit and axes.
+    Explicit(Vec<Formula>),
+}
+
+/// A motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clip {
+    /// Its name.
+    pub name: String,
+    /// Seconds.
+    pub duration: f64,
+    /// Whether it is played again and again.
+    pub looped: bool,
+    /// How far a vertex may be from the exact motion, metres.
+    pub tolerance: Option<f64>,
+    /// Samples a second to begin with.
+    pub rate: f64,
+    /// What moves.
+    pub tracks: Vec<ClipTrack>,
+    /// What happens: seconds and names, in the order of time.
+    pub events: Vec<(f64, String)>,
+}
+
+/// One part of a node or joint in motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClipTrack {
+    /// What moves.
+    pub target: Target,
+    /// How.
+    pub course: Course,
+    /// In which unit and axes the course is.
+    pub space: Space,
+    /// Limits into which rotations are brought, and ranges in metres for translations.
+    pub clamp: Option<(Limits, [Option<Range>; 3])>,
+}
+
+/// In which unit and axes a course is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Space {
+    /// The document's.
+    Document,
+    /// The document's unit along the axes of a rest frame.
+    Rest,
+    /// Metres, y up.
+    File,
+}
+
+/// What a track moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// A node, by its index in [`Model::nodes`](super::Model::nodes).
+    Node(usize),
+    /// A joint of a skeleton.
+    Joint {
+        /// Index in [`Model::skeletons`](super::Model::skeletons).
+        skeleton: usize,
+        /// Index of the joint.
+        joint: usize,
+    },
+}
+
+impl ClipTrack {
+    /// A value of the course in metres with y up, brought into the limits where they clamp; still relative to rest.
+    #[must_use]
+    pub fn converted(&self, value: DVec4, frame: &Frame) -> DVec4 {
+        match self.course.path() {
+            Path::Translation => {
+                let value = value.truncate();
+                let moved = match self.space {
+                    Space::Document => frame.axes() * value * frame.unit,
+                    Space::Rest => value * frame.unit,
+                    Space::File => value,
+                };
+                self.slid(moved).extend(0.0)
+            }
+            Path::Rotation => {
+                let rotation = DQuat::from_vec4(value);
+                let turn = frame.turn();
+                let turned = match self.space {
+                    Space::Document => turn * rotation * turn.conjugate(),
+                    Space::Rest | Space::File => rotation,
+                };
+                DVec4::from(match &self.clamp {
+                    Some((limits, _)) => limits.clamp(turned),
+                    None => turned,
+                })
+            }
+            Path::Scale => match self.space {
+                Space::Document => frame.scale(value.truncate()).extend(0.0),
+                Space::Rest | Space::File => value,
+            },
+        }
+    }
+
+    fn slid(&self, value: DVec3) -> DVec3 {
+        let Some((_, ranges)) = &self.clamp else { return value };
+        if ranges.iter().all(Option::is_none) {
+            return value;
+        }
+        let inside =
+            |axis: usize| ranges[axis].map_or(0.0, |range| value[axis].clamp(range.least, range.most));
+        DVec3::new(inside(0), inside(1), inside(2))
+    }
+}

@@ -1,0 +1,88 @@
+//! The proof that skins and motions can be written.
+
+use super::SceneError;
+use crate::motion::{Influences, Path};
+use crate::scene::{Animation, Channel, Scene, Skin};
+
+pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
+    for skin in &scene.skins {
+        check_skin(scene, skin).map_err(|what| SceneError::Skin(skin.name.clone(), what))?;
+    }
+    for node in &scene.nodes {
+        let Some(skin) = node.skin else { continue };
+        let dangling = || SceneError::Dangling(format!("node `{}`", node.name));
+        let skin = scene.skins.get(skin).ok_or_else(dangling)?;
+        let mesh = node.mesh.and_then(|mesh| scene.meshes.get(mesh)).ok_or_else(dangling)?;
+        let geometry = &scene.geometries[mesh.geometry];
+        let fault = |what| SceneError::Skin(skin.name.clone(), what);
+        let influences = geometry.influences.as_ref().ok_or_else(|| fault("a shape without weights"))?;
+        if influences.len() != geometry.mesh.points.len() {
+            return Err(fault("weights for other points than those of its shape"));
+        }
+        if !influences.iter().all(|one| whole(one, skin.joints.len())) {
+            return Err(fault("weights that do not sum to 255, or of joints it does not have"));
+        }
+    }
+    for animation in &scene.animations {
+        check_animation(scene, animation)
+            .map_err(|what| SceneError::Animation(animation.name.clone(), what))?;
+    }
+    Ok(())
+}
+
+fn whole(influences: &Influences, joints: usize) -> bool {
+    let sum: u32 = influences.iter().map(|one| u32::from(one.weight)).sum();
+    let named = |joint: u8| usize::from(joint) < joints;
+    sum == 255 && influences.iter().all(|one| named(one.joint) && (one.weight > 0 || one.joint == 0))
+}
+
+fn check_skin(scene: &Scene, skin: &Skin) -> Result<(), &'static str> {
+    if skin.joints.is_empty() || skin.joints.len() > 256 {
+        return Err("no joint, or more than 256");
+    }
+    if skin.inverse_bind.len() != skin.joints.len() {
+        return Err("another number of inverse bind maps than joints");
+    }
+    if skin.joints.iter().any(|joint| *joint >= scene.nodes.len()) || skin.root >= scene.nodes.len() {
+        return Err("a joint that does not exist");
+    }
+    let limit = f64::from(f32::MAX);
+    let finite = |map: &glam::DAffine3| map.to_cols_array().iter().all(|number| number.abs() <= limit);
+    if skin.inverse_bind.iter().all(finite) { Ok(()) } else { Err("a map that is not finite") }
+}
+
+fn check_animation(scene: &Scene, animation: &Animation) -> Result<(), &'static str> {
+    if animation.channels.is_empty() {
+        return Err("no channel");
+    }
+    let mut moved: Vec<(usize, Path)> =
+        animation.channels.iter().map(|channel| (channel.node, channel.path)).collect();
+    moved.sort_unstable();
+    if moved.windows(2).any(|pair| pair[0] == pair[1]) {
+        return Err("one part of a node in motion twice");
+    }
+    animation.channels.iter().try_for_each(|channel| check_channel(scene, channel))
+}
+
+fn check_channel(scene: &Scene, channel: &Channel) -> Result<(), &'static str> {
+    if channel.node >= scene.nodes.len() {
+        return Err("a node that does not exist");
+    }
+    if channel.times.is_empty() || channel.times.len() != channel.values.len() {
+        return Err("another number of values than times");
+    }
+    // They are written in single precision, where they must still increase.
+    let times: Vec<f32> = channel.times.iter().map(|time| crate::geometry::number::single(*time)).collect();
+    if times[0] < 0.0 || !times.windows(2).all(|pair| pair[0] < pair[1]) {
+        return Err("times that do not increase from 0");
+    }
+    let limit = f64::from(f32::MAX);
+    if !channel.values.iter().all(|value| value.abs().max_element() <= limit && !value.is_nan()) {
+        return Err("a value that is not finite");
+    }
+    let unit = |value: &glam::DVec4| (value.length_squared() - 1.0).abs() < 1e-5;
+    if channel.path == Path::Rotation && !channel.values.iter().all(unit) {
+        return Err("a rotation that is not of unit length");
+    }
+    Ok(())
+}

@@ -1,0 +1,54 @@
+//! Skins and motions, as a file holds them.
+
+use glam::{DAffine3, DVec3, DVec4};
+
+use crate::motion::Path;
+
+/// Joints that carry meshes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Skin {
+    /// Its name.
+    pub name: String,
+    /// Indices of nodes.
+    pub joints: Vec<usize>,
+    /// For each joint the map from the mesh's space to its own at rest.
+    pub inverse_bind: Vec<DAffine3>,
+    /// Index of the node that carries all joints.
+    pub root: usize,
+}
+
+/// A motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Animation {
+    /// Its name.
+    pub name: String,
+    /// What moves, at least one thing, and no part of a node twice.
+    pub channels: Vec<Channel>,
+    /// Whether it is played again and again.
+    pub looped: bool,
+    /// What happens: seconds and names.
+    pub events: Vec<(f64, String)>,
+    /// The box of all vertices over the whole motion, metres; none where nothing is shown.
+    pub reach: Option<(DVec3, DVec3)>,
+    /// No vertex is further from the exact motion at any sample, metres.
+    pub bound: f64,
+    /// What was asked for, metres.
+    pub tolerance: f64,
+    /// Samples of the exact motion.
+    pub samples: usize,
+}
+
+/// One part of a node in motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// The node.
+    pub node: usize,
+    /// Which part of it.
+    pub path: Path,
+    /// Whether values stay until the next key; else they run straight, rotations on the sphere.
+    pub stepped: bool,
+    /// Seconds, increasing.
+    pub times: Vec<f64>,
+    /// One value for each time: translations and scales (x, y, z), rotations (x, y, z, w).
+    pub values: Vec<DVec4>,
+}
