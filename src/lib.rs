@@ -29,6 +29,7 @@
 //! | `optimize` | `geometry::number`, `geometry::mesh`, `motion`, `scene` |
 //! | `gltf` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `scene` |
 //! | `report` | `geometry`, `motion`, `model`, `scene`, `realize`, `gltf` |
+//! | `preview` | `geometry::number`, `import` |
 //! | `language` | `geometry::number` |
 //! | `build` | `geometry`, `motion`, `import`, `language`, `model` |
 //! | `compile` | everything but `cli` |
@@ -49,6 +50,7 @@ pub mod language;
 pub mod model;
 pub mod motion;
 pub mod optimize;
+pub mod preview;
 pub mod realize;
 pub mod report;
 pub mod scene;

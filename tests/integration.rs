@@ -6,4 +6,5 @@ mod curves;
 mod import;
 mod language;
 mod laws;
+mod preview;
 mod surfaces;

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::preview::View;
+
 /// Bakes model specs (TOML) into glTF.
 #[derive(Debug, Parser)]
 #[command(name = "kiln", version, about, max_term_width = 100)]
@@ -61,6 +63,8 @@ pub(crate) enum Command {
     Bake(Bake),
     /// Find everything that is wrong with documents, and write nothing
     Check(Check),
+    /// Draw a picture of a document or of a .glb file
+    Render(Render),
     /// Print points and derivatives of a curve or a surface as JSON
     Sample(Sample),
     /// Print the JSON Schema of documents, for editors
@@ -113,6 +117,79 @@ pub(crate) struct Bake {
 pub(crate) struct Check {
     #[command(flatten)]
     pub(crate) documents: Documents,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Render {
+    /// The document, or a .glb file
+    pub(crate) file: PathBuf,
+    /// The picture: .png; .svg or .eps for lines; .apng for a turntable and a clip that plays [default: the file's name
+    /// with .png]
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// From where: front, right, back, left, top, bottom, corner, or AZIMUTH,ELEVATION in degrees; several make a sheet
+    #[arg(long, value_name = "VIEW", default_value = "corner", allow_hyphen_values = true, value_parser = view)]
+    pub(crate) view: Vec<View>,
+    /// Pixels of each view
+    #[arg(long, value_name = "N|WIDTHxHEIGHT", default_value = "1024", value_parser = pixels)]
+    pub(crate) size: (u32, u32),
+    /// How light is reflected
+    #[arg(long, value_enum, default_value_t = ShadingName::Standard)]
+    pub(crate) shading: ShadingName,
+    /// Draw parallel lines as parallel lines
+    #[arg(long)]
+    pub(crate) orthographic: bool,
+    /// Cast no shadows
+    #[arg(long)]
+    pub(crate) no_shadows: bool,
+    /// What becomes of hidden lines in .svg and .eps
+    #[arg(long, value_enum, default_value_t = Hidden::Dashed)]
+    pub(crate) hidden: Hidden,
+    /// What is behind everything: a color like #e6e8ec, or `transparent`
+    #[arg(long, value_name = "COLOR", default_value = "#e6e8ec", value_parser = background)]
+    pub(crate) background: [u8; 4],
+    /// The clip to show
+    #[arg(long, value_name = "NAME")]
+    pub(crate) clip: Option<String>,
+    /// Seconds from the start of the clip; without it, an .apng plays the whole clip
+    #[arg(long, value_name = "SECONDS", requires = "clip", value_parser = seconds)]
+    pub(crate) time: Option<f64>,
+    /// Turn once around in this many pictures
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=720))]
+    pub(crate) turntable: Option<u16>,
+    /// The folder that the document may not read outside of [default: the working directory]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) root: Option<PathBuf>,
+    /// The variant of the document
+    #[arg(long, value_name = "NAME")]
+    pub(crate) variant: Option<String>,
+    /// Set a parameter of the document
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub(crate) set: Vec<(String, String)>,
+}
+
+/// What becomes of hidden lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Hidden {
+    /// They are thin and dashed
+    Dashed,
+    /// They are left out
+    None,
+}
+
+/// How light is reflected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ShadingName {
+    /// As glTF says: metal and roughness
+    Standard,
+    /// Phong's rule, with normals between those of the corners
+    Phong,
+    /// Phong's rule at the corners, and light between them
+    Gouraud,
+    /// Phong's rule, one normal for each triangle
+    Flat,
+    /// Normals as colors
+    Normals,
 }
 
 #[derive(Debug, Args)]
@@ -171,4 +248,53 @@ fn assignment(text: &str) -> Result<(String, String), String> {
         }
         _ => Err("write NAME=VALUE, as in `height=0.3`".to_owned()),
     }
+}
+
+fn view(text: &str) -> Result<View, String> {
+    if let Some((_, view)) = View::NAMED.iter().find(|(name, _)| *name == text) {
+        return Ok(*view);
+    }
+    let wrong = || {
+        let names: Vec<&str> = View::NAMED.iter().map(|(name, _)| *name).collect();
+        format!("write {}, or AZIMUTH,ELEVATION in degrees, as in `30,20`", names.join(", "))
+    };
+    let (azimuth, elevation) = text.split_once(',').ok_or_else(wrong)?;
+    let number =
+        |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite()).ok_or_else(wrong);
+    let (azimuth, elevation) = (number(azimuth)?, number(elevation)?);
+    if !(-90.0..=90.0).contains(&elevation) {
+        return Err(format!("the elevation {elevation} lies outside -90 to 90 degrees"));
+    }
+    Ok(View { azimuth, elevation })
+}
+
+fn pixels(text: &str) -> Result<(u32, u32), String> {
+    const MOST: u32 = 8192;
+    let (width, height) = text.split_once('x').unwrap_or((text, text));
+    let number = |text: &str| {
+        let number: u32 = text.trim().parse().map_err(|_| format!("`{text}` is not a number of pixels"))?;
+        if (1..=MOST).contains(&number) {
+            Ok(number)
+        } else {
+            Err(format!("write 1 to {MOST} pixels, not {number}"))
+        }
+    };
+    Ok((number(width)?, number(height)?))
+}
+
+fn background(text: &str) -> Result<[u8; 4], String> {
+    if text == "transparent" {
+        return Ok([0; 4]);
+    }
+    let wrong = || format!("write a color like #e6e8ec, or `transparent`, not `{text}`");
+    let digits =
+        text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii()).ok_or_else(wrong)?;
+    let number = u32::from_str_radix(digits, 16).map_err(|_| wrong())?;
+    let [_, r, g, b] = number.to_be_bytes();
+    Ok([r, g, b, 255])
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let time: f64 = text.trim().parse().map_err(|_| format!("`{text}` is not a number of seconds"))?;
+    if time.is_finite() && time >= 0.0 { Ok(time) } else { Err("write 0 or more seconds".to_owned()) }
 }

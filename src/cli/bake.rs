@@ -1,9 +1,8 @@
 //! `kiln bake`: documents into files.
 
 use std::collections::BTreeMap;
-use std::io::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Mutex;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -14,6 +13,7 @@ use super::Outcome;
 use super::arguments::Bake;
 use super::output::Printer;
 use super::project::{Task, reason, tasks};
+use super::save;
 use super::told::Told;
 use crate::compile::{Compiled, Options, compile};
 use crate::report::{DeviationFacts, Kind, Report};
@@ -259,41 +259,17 @@ fn size(bytes: usize) -> String {
     }
 }
 
-/// Writes the file and its report under temporary names, then gives both their own: a reader sees the old
-/// files or the new ones, whole.
+/// Writes the file and its report.
 fn save(folder: &Path, compiled: &Compiled) -> std::io::Result<()> {
-    std::fs::create_dir_all(folder)?;
-    let mut waiting: Vec<(tempfile::NamedTempFile, PathBuf)> = Vec::new();
-    let mut put = |name: &str, bytes: &[u8]| -> std::io::Result<()> {
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".kiln-");
-        let mut file = builder.tempfile_in(folder)?;
-        file.write_all(bytes)?;
-        waiting.push((file, folder.join(name)));
-        Ok(())
-    };
-    put(&compiled.file, &compiled.bytes)?;
     let report_name = format!("{}.report.json", compiled.file.trim_end_matches(".glb"));
+    let mut text = Vec::new();
     if let Some(report) = &compiled.report {
-        let mut text = serde_json::to_vec_pretty(report)?;
+        text = serde_json::to_vec_pretty(report)?;
         text.push(b'\n');
-        put(&report_name, &text)?;
     }
-    for (file, target) in waiting {
-        readable(file.as_file())?;
-        file.persist(target).map_err(|error| error.error)?;
+    let mut files = vec![(compiled.file.as_str(), compiled.bytes.as_slice())];
+    if compiled.report.is_some() {
+        files.push((&report_name, &text));
     }
-    Ok(())
-}
-
-/// Temporary files are for their owner alone; outputs are for all, as the system's mask has it.
-#[cfg(unix)]
-fn readable(file: &std::fs::File) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt as _;
-    file.set_permissions(std::fs::Permissions::from_mode(0o644))
-}
-
-#[cfg(not(unix))]
-fn readable(_: &std::fs::File) -> std::io::Result<()> {
-    Ok(())
+    save::save(folder, &files)
 }

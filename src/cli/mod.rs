@@ -9,9 +9,11 @@ mod describe;
 mod inspect;
 mod output;
 mod project;
+mod render;
 mod sample;
 mod sample_curve;
 mod sample_surface;
+mod save;
 mod starter;
 mod timed;
 mod told;
@@ -62,6 +64,7 @@ pub fn run() -> ExitCode {
     let outcome = match arguments.command {
         Command::Bake(bake) => bake::run(&bake, &printer),
         Command::Check(check) => check::run(&check, &printer),
+        Command::Render(render) => render::run(&render, &printer),
         Command::Sample(sample) => sample::run(&sample, &printer),
         Command::Schema => describe::schema(&printer),
         Command::Reference => describe::reference(&printer),

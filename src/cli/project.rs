@@ -60,8 +60,8 @@ pub(crate) fn tasks(documents: &Documents, printer: &Printer) -> Option<Vec<Task
 }
 
 /// A single document.
-pub(crate) fn task(path: &Path) -> Result<Task, String> {
-    let mut tasks = collect(path, None)?;
+pub(crate) fn task(path: &Path, root: Option<&Path>) -> Result<Task, String> {
+    let mut tasks = collect(path, root)?;
     if tasks.len() == 1 && path.is_file() {
         return Ok(tasks.remove(0));
     }

@@ -18,7 +18,7 @@ use crate::geometry::surface::{ExtrudedSurface, RevolvedSurface, Surface, SweptS
 use crate::model::{Model, Recipe};
 
 pub(crate) fn run(sample: &Sample, printer: &Printer) -> Outcome {
-    let task = match task(&sample.file) {
+    let task = match task(&sample.file, None) {
         Ok(task) => task,
         Err(message) => {
             printer.failure(&message, None);

@@ -8,6 +8,7 @@ use std::io::Cursor;
 use serde::Serialize;
 use thiserror::Error;
 use zune_jpeg::zune_core::bytestream::ZCursor;
+use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
 /// Format of a picture that glTF can hold.
@@ -124,6 +125,61 @@ pub fn read(bytes: &[u8], pixel_limit: u64) -> Result<ImageFacts, ImageError> {
     Err(ImageError::Format {
         found: known
             .map_or(if bytes.is_empty() { "an empty file" } else { "not a picture" }, |&(_, name)| name),
+    })
+}
+
+/// A picture, decoded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pixels {
+    /// Pixels across, at least 1.
+    pub width: u32,
+    /// Pixels down, at least 1.
+    pub height: u32,
+    /// Red, green, blue and opacity of each pixel, row by row from the top.
+    pub rgba: Vec<[u8; 4]>,
+}
+
+/// Decodes a picture of at most `pixel_limit` pixels; numbers of 16 bits keep their upper 8.
+///
+/// # Errors
+/// See [`ImageError`].
+pub fn pixels(bytes: &[u8], pixel_limit: u64) -> Result<Pixels, ImageError> {
+    let facts = read(bytes, pixel_limit)?;
+    let rgba = match facts.kind {
+        Kind::Png => png_pixels(bytes)?,
+        Kind::Jpeg => {
+            let most = usize::from(u16::MAX);
+            let options = DecoderOptions::default()
+                .set_max_width(most)
+                .set_max_height(most)
+                .jpeg_set_out_colorspace(ColorSpace::RGBA);
+            let mut decoder = zune_jpeg::JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+            let decoded = decoder
+                .decode()
+                .map_err(|error| ImageError::Damaged { kind: Kind::Jpeg, reason: error.to_string() })?;
+            decoded.as_chunks().0.to_vec()
+        }
+    };
+    let count = u64::from(facts.width) * u64::from(facts.height);
+    if rgba.len() as u64 != count {
+        let reason = "it holds another number of pixels than it says".to_owned();
+        return Err(ImageError::Damaged { kind: facts.kind, reason });
+    }
+    Ok(Pixels { width: facts.width, height: facts.height, rgba })
+}
+
+fn png_pixels(bytes: &[u8]) -> Result<Vec<[u8; 4]>, ImageError> {
+    let damaged = |reason: String| ImageError::Damaged { kind: Kind::Png, reason };
+    let mut decoder = png::Decoder::new(Cursor::new(bytes));
+    decoder.set_transformations(png::Transformations::normalize_to_color8() | png::Transformations::ALPHA);
+    let mut reader = decoder.read_info().map_err(|error| damaged(error.to_string()))?;
+    let size = reader.output_buffer_size().ok_or_else(|| damaged("it is too large".to_owned()))?;
+    let mut decoded = vec![0; size];
+    let info = reader.next_frame(&mut decoded).map_err(|error| damaged(error.to_string()))?;
+    decoded.truncate(info.buffer_size());
+    Ok(match info.color_type.samples() {
+        2 => decoded.as_chunks().0.iter().map(|[grey, alpha]| [*grey, *grey, *grey, *alpha]).collect(),
+        _ => decoded.as_chunks().0.to_vec(),
     })
 }
 

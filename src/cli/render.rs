@@ -1,0 +1,212 @@
+//! `kiln render`: pictures of documents and of `.glb` files.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+
+use super::Outcome;
+use super::arguments::{Hidden, Render, ShadingName};
+use super::output::Printer;
+use super::project::{reason, task};
+use super::save;
+use crate::compile::{Options, compile};
+use crate::preview::asset::{self, Asset};
+use crate::preview::lines::{Ink, draw_lines, postscript, svg};
+use crate::preview::{Camera, Look, Moment, Picture, Projection, Shading, Stage, View, draw_picture};
+
+/// Pictures a second of a clip that plays.
+const RATE: f64 = 24.0;
+
+/// Most pictures of an animation.
+const MOST: usize = 2000;
+
+pub(crate) fn run(render: &Render, printer: &Printer) -> Outcome {
+    match picture(render, printer) {
+        Ok(()) => Outcome::Good,
+        Err((message, outcome)) => {
+            if let Some(message) = message {
+                printer.failure(&message, None);
+            }
+            outcome
+        }
+    }
+}
+
+/// A message that is still to be printed, and how the command ends.
+type Fault = (Option<String>, Outcome);
+
+fn picture(render: &Render, printer: &Printer) -> Result<(), Fault> {
+    let usage = |message: &str| (Some(message.to_owned()), Outcome::Usage);
+    let out = render.out.clone().unwrap_or_else(|| PathBuf::from(named(&render.file)).with_extension("png"));
+    let ending = out.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
+    let plays = render.clip.is_some() && render.time.is_none() && ending == "apng";
+    let moves = plays || render.turntable.is_some();
+    match ending.as_str() {
+        "png" | "apng" | "svg" | "eps" => {}
+        _ => {
+            let message =
+                format!("write a picture that ends in .png, .apng, .svg or .eps, not {}", out.display());
+            return Err(usage(&message));
+        }
+    }
+    let drawn = matches!(ending.as_str(), "svg" | "eps");
+    if drawn && (render.turntable.is_some() || render.view.len() > 1) {
+        return Err(usage("a line drawing has one view; write several drawings, or a .png"));
+    }
+    if ending == "apng" && !moves {
+        return Err(usage("an .apng moves: write --turntable N, or --clip NAME without --time"));
+    }
+    let bytes = bytes(render, printer)?;
+    let asset = asset::read(&bytes)
+        .map_err(|error| (Some(format!("{}: {error}", render.file.display())), Outcome::Errors))?;
+    for note in &asset.notes {
+        printer.result(&format!("note: {note}"), &json!({ "note": note }));
+    }
+    let file = if plays {
+        clip(render, &asset)?
+    } else {
+        let stage = stage(&asset, render, render.time.unwrap_or(0.0))?;
+        match render.turntable {
+            Some(count) => turntable(render, &asset, &stage, count)?,
+            None if drawn => lines(render, &stage, &ending).into_bytes(),
+            None => still(render, &asset, &stage).png().map_err(unwritten)?,
+        }
+    };
+    let folder = out.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let name =
+        out.file_name().and_then(|name| name.to_str()).ok_or_else(|| usage("write the name of a file"))?;
+    save::save(folder, &[(name, &file)]).map_err(|error| {
+        (Some(format!("cannot write {}: {}", out.display(), reason(&error))), Outcome::Files)
+    })?;
+    printer.result(
+        &out.display().to_string(),
+        &json!({ "picture": out.display().to_string(), "bytes": file.len() }),
+    );
+    Ok(())
+}
+
+fn unwritten(error: crate::preview::PictureError) -> Fault {
+    (Some(error.to_string()), Outcome::Errors)
+}
+
+fn named(file: &Path) -> &std::ffi::OsStr {
+    file.file_name().unwrap_or(file.as_os_str())
+}
+
+/// The bytes to draw: of a `.glb` file as they are, of a document as it is baked.
+fn bytes(render: &Render, printer: &Printer) -> Result<Vec<u8>, Fault> {
+    let file = render.file.display();
+    let unread = |error: std::io::Error| (Some(format!("{file}: {}", reason(&error))), Outcome::Files);
+    if render.file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("glb")) {
+        if render.variant.is_some() || !render.set.is_empty() {
+            let message = "--variant and --set are for documents; a .glb file is drawn as it is";
+            return Err((Some(message.to_owned()), Outcome::Usage));
+        }
+        return std::fs::read(&render.file).map_err(unread);
+    }
+    let task =
+        task(&render.file, render.root.as_deref()).map_err(|message| (Some(message), Outcome::Files))?;
+    let (files, document) = task.load().map_err(unread)?;
+    let options = Options {
+        variant: render.variant.clone(),
+        overrides: render.set.clone(),
+        name: task.name().to_owned(),
+        path: task.path.clone(),
+        no_report: true,
+        measure: false,
+    };
+    let compiled = document.and_then(|document| compile(&document, &files, &options));
+    let compiled = compiled.map_err(|list| {
+        printer.diagnostics(&list);
+        (None, Outcome::Errors)
+    })?;
+    if !compiled.warnings.is_empty() {
+        printer.diagnostics(&compiled.warnings);
+    }
+    Ok(compiled.bytes)
+}
+
+fn stage(asset: &Asset, render: &Render, time: f64) -> Result<Stage, Fault> {
+    let moment = Moment { clip: render.clip.clone(), time };
+    Stage::new(asset, &moment).map_err(|error| (Some(error.to_string()), Outcome::Usage))
+}
+
+fn look(render: &Render) -> Look {
+    Look {
+        size: render.size,
+        shading: match render.shading {
+            ShadingName::Standard => Shading::Standard,
+            ShadingName::Phong => Shading::Phong,
+            ShadingName::Gouraud => Shading::Gouraud,
+            ShadingName::Flat => Shading::Flat,
+            ShadingName::Normals => Shading::Normals,
+        },
+        projection: if render.orthographic { Projection::Orthographic } else { Projection::Perspective },
+        shadows: !render.no_shadows,
+        background: render.background,
+    }
+}
+
+/// All views on one sheet.
+fn still(render: &Render, asset: &Asset, stage: &Stage) -> Picture {
+    let look = look(render);
+    let of = |view: &View| draw_picture(asset, stage, &Camera::on(&[stage], *view, &look), &look, None);
+    let mut pictures: Vec<Picture> = render.view.iter().map(of).collect();
+    match pictures.len() {
+        1 => pictures.remove(0),
+        _ => Picture::sheet(&pictures, look.background),
+    }
+}
+
+/// The lines of the first view.
+fn lines(render: &Render, stage: &Stage, ending: &str) -> String {
+    let look = look(render);
+    let drawing = draw_lines(stage, &Camera::on(&[stage], first_view(render), &look));
+    let [r, g, b, opacity] = look.background;
+    let paper = (opacity > 0).then_some([r, g, b]);
+    let ink = Ink { size: look.size, hidden: render.hidden == Hidden::Dashed, paper };
+    if ending == "svg" { svg(&drawing, &ink) } else { postscript(&drawing, &ink) }
+}
+
+/// Once around, from the first view; the distance stays.
+fn turntable(render: &Render, asset: &Asset, stage: &Stage, count: u16) -> Result<Vec<u8>, Fault> {
+    let look = look(render);
+    let start = first_view(render);
+    let view = |k: u16| View { azimuth: start.azimuth + 360.0 * f64::from(k) / f64::from(count), ..start };
+    let pictures: Vec<Picture> = (0..count)
+        .map(|k| {
+            let camera = Camera::turning(&stage.bounds, view(k), look.projection, look.size);
+            draw_picture(asset, stage, &camera, &look, None)
+        })
+        .collect();
+    // Once around takes four seconds, however many pictures there are.
+    let milliseconds = (4000 / count).max(10);
+    Picture::animation(&pictures, milliseconds).map_err(unwritten)
+}
+
+/// The whole clip; the camera stands where it sees all of it.
+fn clip(render: &Render, asset: &Asset) -> Result<Vec<u8>, Fault> {
+    let look = look(render);
+    let name = render.clip.as_deref().unwrap_or_default();
+    let found = asset.clips.iter().find(|clip| clip.name == name);
+    let duration = found.map_or(0.0, asset::Clip::duration);
+    let count = crate::geometry::number::floor_index(duration * RATE).max(1);
+    if count > MOST {
+        let message = format!(
+            "the clip `{name}` of {duration} s would be {count} pictures, more than {MOST}; write --time"
+        );
+        return Err((Some(message), Outcome::Usage));
+    }
+    let stages: Result<Vec<Stage>, Fault> =
+        (0..count).map(|k| stage(asset, render, k as f64 / RATE)).collect();
+    let stages = stages?;
+    let all: Vec<&Stage> = stages.iter().collect();
+    let camera = Camera::on(&all, first_view(render), &look);
+    let pictures: Vec<Picture> =
+        stages.iter().map(|stage| draw_picture(asset, stage, &camera, &look, None)).collect();
+    Picture::animation(&pictures, 42).map_err(unwritten)
+}
+
+fn first_view(render: &Render) -> View {
+    render.view.first().copied().unwrap_or(View::NAMED[0].1)
+}

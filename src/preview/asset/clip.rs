@@ -1,0 +1,191 @@
+//! Clips: what nodes do over time.
+//!
+//! Source: Khronos Group, glTF 2.0 Specification, 2021, section 3.11 and appendix C (interpolation).
+
+use glam::{DQuat, DVec3};
+
+use super::accessor::Data;
+use super::{AssetError, Node, Place};
+use crate::geometry::number::{acos, sin};
+
+/// A clip.
+#[derive(Clone, Debug)]
+pub struct Clip {
+    /// Its name, may be empty.
+    pub name: String,
+    /// What it moves.
+    pub channels: Vec<Channel>,
+}
+
+/// One thing that moves.
+#[derive(Clone, Debug)]
+pub struct Channel {
+    /// The node.
+    pub node: usize,
+    /// Seconds at which its keys stand, in order.
+    pub times: Vec<f32>,
+    /// Between the keys.
+    pub steps: Steps,
+    /// What the keys say.
+    pub track: Track,
+}
+
+/// How a value goes from key to key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Steps {
+    /// It waits for the next key.
+    Step,
+    /// Straight; turns go along the shorter arc.
+    Linear,
+    /// By a Hermite cubic: each key is an incoming tangent, a value and an outgoing tangent.
+    Cubic,
+}
+
+/// The values of a channel.
+#[derive(Clone, Debug)]
+pub enum Track {
+    /// Moves.
+    Translation(Vec<[f32; 3]>),
+    /// Turns.
+    Rotation(Vec<[f32; 4]>),
+    /// Scales.
+    Scale(Vec<[f32; 3]>),
+    /// Weights of morph targets, as many for each key as there are targets.
+    Weights(Vec<f32>),
+}
+
+pub(super) fn read(data: &Data<'_>, own: &gltf::Animation<'_>) -> Result<Clip, AssetError> {
+    use gltf::animation::Property;
+    let channels: Result<Vec<Channel>, AssetError> = own
+        .channels()
+        .map(|channel| {
+            let sampler = channel.sampler();
+            let times = data.numbers::<1>(&sampler.input())?;
+            let output = sampler.output();
+            let steps = match sampler.interpolation() {
+                gltf::animation::Interpolation::Step => Steps::Step,
+                gltf::animation::Interpolation::Linear => Steps::Linear,
+                gltf::animation::Interpolation::CubicSpline => Steps::Cubic,
+            };
+            let track = match channel.target().property() {
+                Property::Translation => Track::Translation(data.numbers(&output)?),
+                Property::Rotation => Track::Rotation(data.numbers(&output)?),
+                Property::Scale => Track::Scale(data.numbers(&output)?),
+                Property::MorphTargetWeights => {
+                    Track::Weights(data.numbers::<1>(&output)?.into_iter().map(|[weight]| weight).collect())
+                }
+            };
+            let values = match &track {
+                Track::Translation(values) | Track::Scale(values) => values.len(),
+                Track::Rotation(values) => values.len(),
+                Track::Weights(values) => values.len(),
+            };
+            let keys = times.len() * if steps == Steps::Cubic { 3 } else { 1 };
+            let fits = match track {
+                Track::Weights(_) => keys > 0 && values % keys == 0,
+                _ => keys > 0 && values == keys,
+            };
+            if !fits {
+                return Err(AssetError::Accessor(output.index()));
+            }
+            let times = times.into_iter().map(|[time]| time).collect();
+            Ok(Channel { node: channel.target().node().index(), times, steps, track })
+        })
+        .collect();
+    Ok(Clip { name: own.name().unwrap_or_default().to_owned(), channels: channels? })
+}
+
+impl Clip {
+    /// Its last key, in seconds.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        let last = |channel: &Channel| channel.times.last().map_or(0.0, |time| f64::from(*time));
+        self.channels.iter().map(last).fold(0.0, f64::max)
+    }
+
+    /// Puts nodes where they are at a time, in seconds; before the first key and after the last they wait.
+    pub fn apply(&self, time: f64, nodes: &mut [Node]) {
+        for channel in &self.channels {
+            let Some(node) = nodes.get_mut(channel.node) else { continue };
+            let at = Moment::new(&channel.times, time, channel.steps);
+            if let Track::Weights(values) = &channel.track {
+                let keys = channel.times.len() * if channel.steps == Steps::Cubic { 3 } else { 1 };
+                let targets = values.len() / keys;
+                let weight = |k: usize| at.value(|key| f64::from(values[key * targets + k]));
+                node.weights = (0..targets).map(weight).collect();
+                continue;
+            }
+            let Place::Parts { translation, rotation, scale } = &mut node.place else { continue };
+            match &channel.track {
+                Track::Translation(values) => *translation = at.vector(values),
+                Track::Scale(values) => *scale = at.vector(values),
+                Track::Rotation(values) => *rotation = at.turn(values),
+                Track::Weights(_) => {}
+            }
+        }
+    }
+}
+
+/// A time between two keys.
+struct Moment {
+    before: usize,
+    after: usize,
+    /// From 0 at the one to 1 at the other.
+    part: f64,
+    /// Seconds from the one to the other.
+    span: f64,
+    steps: Steps,
+}
+
+impl Moment {
+    fn new(times: &[f32], time: f64, steps: Steps) -> Self {
+        let next = times.partition_point(|key| f64::from(*key) <= time);
+        let (before, after) = (next.saturating_sub(1), next.min(times.len() - 1));
+        let (start, end) = (f64::from(times[before]), f64::from(times[after]));
+        let span = end - start;
+        let part = if span > 0.0 { ((time - start) / span).clamp(0.0, 1.0) } else { 0.0 };
+        Self { before, after, part, span, steps }
+    }
+
+    fn value(&self, key: impl Fn(usize) -> f64) -> f64 {
+        let t = self.part;
+        match self.steps {
+            Steps::Step => key(self.before),
+            Steps::Linear => key(self.before) * (1.0 - t) + key(self.after) * t,
+            Steps::Cubic => {
+                let (start, leaves) = (key(3 * self.before + 1), key(3 * self.before + 2));
+                let (arrives, end) = (key(3 * self.after), key(3 * self.after + 1));
+                let (t2, t3) = (t * t, t * t * t);
+                start * (2.0 * t3 - 3.0 * t2 + 1.0)
+                    + leaves * self.span * (t3 - 2.0 * t2 + t)
+                    + end * (3.0 * t2 - 2.0 * t3)
+                    + arrives * self.span * (t3 - t2)
+            }
+        }
+    }
+
+    fn vector(&self, values: &[[f32; 3]]) -> DVec3 {
+        DVec3::from_array([0, 1, 2].map(|k| self.value(|key| f64::from(values[key][k]))))
+    }
+
+    fn turn(&self, values: &[[f32; 4]]) -> DQuat {
+        let at = |key: usize| DQuat::from_array(values[key].map(f64::from));
+        match self.steps {
+            Steps::Linear => arc(at(self.before), at(self.after), self.part),
+            _ => DQuat::from_array([0, 1, 2, 3].map(|k| self.value(|key| f64::from(values[key][k]))))
+                .normalize(),
+        }
+    }
+}
+
+/// Between two turns along the shorter arc.
+fn arc(start: DQuat, end: DQuat, part: f64) -> DQuat {
+    let cosine = start.dot(end);
+    let (end, cosine) = if cosine < 0.0 { (-end, -cosine) } else { (end, cosine) };
+    if cosine > 0.9995 {
+        return (start * (1.0 - part) + end * part).normalize();
+    }
+    let angle = acos(cosine.min(1.0));
+    let (first, second) = (sin(angle * (1.0 - part)), sin(angle * part));
+    ((start * first + end * second) * (1.0 / sin(angle))).normalize()
+}
