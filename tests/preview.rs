@@ -4,6 +4,7 @@ mod drawing;
 mod files;
 
 use glam::DVec3;
+use kiln::geometry::number::floor_index;
 use kiln::preview::asset;
 use kiln::preview::{Camera, Look, Moment, Picture, Projection, Shading, Stage, View, draw_picture};
 
@@ -95,7 +96,7 @@ fn light_comes_from_the_upper_left_and_casts_shadows() {
     let unlit = picture(text, "front", &Look { shadows: false, ..parallel(200) });
     // The light comes from (-0.55, 0.8, 0.75): a meter behind, the shadow lies 0.73 m to the right and 1.07 m down.
     let scale = 0.88 * 200.0 / 4.0;
-    let at = |x: f64, y: f64| (100.0 - y * scale) as usize * 200 + (100.0 + x * scale) as usize;
+    let at = |x: f64, y: f64| floor_index(100.0 - y * scale) * 200 + floor_index(100.0 + x * scale);
     let (shaded, open) = (at(0.73, -1.2), at(-1.2, 1.2));
     assert!(
         grey(lit.pixels[shaded]) + 60 < grey(unlit.pixels[shaded]),

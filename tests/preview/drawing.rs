@@ -1,6 +1,7 @@
 //! Line drawings.
 
 use glam::{DVec2, DVec3};
+use kiln::geometry::number::floor_index;
 use kiln::preview::lines::{Drawing, Ink, Kind, Trace, draw_lines, postscript, svg};
 use kiln::preview::{Camera, Look, Projection, Stage, View, depths};
 
@@ -114,7 +115,7 @@ fn what_is_hidden_is_hidden_by_as_many_triangles_as_lie_before() {
 
 /// The nearest and the farthest that a z-buffer sees in a pixel and its neighbors.
 fn around(depths: &[f32], size: usize, place: DVec2) -> (f64, f64) {
-    let within = |value: f64| ((value as usize).saturating_sub(1), (value as usize + 1).min(size - 1));
+    let within = |value: f64| (floor_index(value - 1.0), floor_index(value + 1.0).min(size - 1));
     let ((left, right), (top, bottom)) = (within(place.x), within(place.y));
     let own = (top..=bottom).flat_map(|y| (left..=right).map(move |x| f64::from(depths[y * size + x])));
     own.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), own| (low.min(own), high.max(own)))
