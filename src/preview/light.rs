@@ -168,7 +168,11 @@ mod tests {
                             / (count * count) as f32;
                     }
                 }
-                assert!(sum > 0.4 && sum < 1.02, "roughness {roughness}, metallic {metallic}: {sum}");
+                assert!(sum > 0.3 && sum < 1.02, "roughness {roughness}, metallic {metallic}: {sum}");
+                if roughness == 1.0 && metallic == 1.0 {
+                    // With one facet as likely as another the sum is the integral of x / (1 + x) from 0 to 1.
+                    assert!((sum - (1.0 - std::f32::consts::LN_2)).abs() < 1e-3, "{sum}");
+                }
             }
         }
     }

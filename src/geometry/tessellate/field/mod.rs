@@ -7,7 +7,7 @@
 //! greatest of samples in and around the triangles, with a margin. Work ends: cells, rounds, triangles and what is asked
 //! of the field are counted.
 //!
-//! The way: [`cells`] finds where the surface runs, [`march`] makes first triangles that are sound by construction,
+//! The way: [`cells`] finds where the surface runs, [`mod@march`] makes first triangles that are sound by construction,
 //! [`edges`] finds the edges of the surface, [`refine`] makes few triangles of many, and what comes out is checked.
 
 mod cells;
