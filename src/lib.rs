@@ -33,6 +33,8 @@
 //! | `language` | `geometry::number` |
 //! | `build` | `geometry`, `motion`, `import`, `language`, `model` |
 //! | `compile` | everything but `cli` |
+//! | `project` | `language` |
+//! | `build_script` | everything but `cli` |
 //! | `cli` | everything |
 //!
 //! Rows stand in the order of the direction: a row names only rows above it. `scene` uses of `model` the
@@ -40,6 +42,7 @@
 //! see neither `model` nor `realize`.
 
 pub mod build;
+pub mod build_script;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod compile;
@@ -51,10 +54,12 @@ pub mod model;
 pub mod motion;
 pub mod optimize;
 pub mod preview;
+mod project;
 pub mod realize;
 pub mod report;
 pub mod scene;
 
+pub use build_script::Build;
 pub use compile::compile;
 
 /// The lines of the README that a build script takes are compiled with the documentation's tests.

@@ -2,6 +2,7 @@
 
 mod architecture;
 mod bake;
+mod build_script;
 mod curves;
 mod import;
 mod language;

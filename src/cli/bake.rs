@@ -12,10 +12,9 @@ use serde_json::json;
 use super::Outcome;
 use super::arguments::Bake;
 use super::output::Printer;
-use super::project::{Task, reason, tasks};
-use super::save;
-use super::told::Told;
+use super::project::tasks;
 use crate::compile::{Compiled, Options, compile};
+use crate::project::{Task, Told, reason, save};
 use crate::report::{DeviationFacts, Kind, Report};
 
 /// Bakes all documents; one that fails does not stop the others.
@@ -195,7 +194,7 @@ impl Worker<'_> {
             None => self.bake.out.clone(),
         };
         let target = folder.join(&compiled.file);
-        if let Err(error) = save(&folder, &compiled) {
+        if let Err(error) = write_asset(&folder, &compiled) {
             messages.push(Message::Failure(format!("cannot write {}: {}", target.display(), reason(&error))));
             return Outcome::Files;
         }
@@ -260,7 +259,7 @@ fn size(bytes: usize) -> String {
 }
 
 /// Writes the file and its report.
-fn save(folder: &Path, compiled: &Compiled) -> std::io::Result<()> {
+fn write_asset(folder: &Path, compiled: &Compiled) -> std::io::Result<()> {
     let report_name = format!("{}.report.json", compiled.file.trim_end_matches(".glb"));
     let mut text = Vec::new();
     if let Some(report) = &compiled.report {
@@ -271,5 +270,5 @@ fn save(folder: &Path, compiled: &Compiled) -> std::io::Result<()> {
     if compiled.report.is_some() {
         files.push((&report_name, &text));
     }
-    save::save(folder, &files)
+    save(folder, &files)
 }

@@ -5,9 +5,9 @@ use serde_json::json;
 use super::Outcome;
 use super::arguments::Check;
 use super::output::Printer;
-use super::project::{reason, tasks};
-use super::told::Told;
+use super::project::tasks;
 use crate::compile::{Options, compile};
+use crate::project::{Told, reason};
 
 /// Checks all documents, to the end of the pipeline: what passes here can be baked.
 pub(crate) fn run(check: &Check, printer: &Printer) -> Outcome {

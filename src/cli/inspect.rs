@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 use super::Outcome;
 use super::arguments::{Format, Inspect};
 use super::output::Printer;
-use super::project::reason;
 use crate::gltf;
+use crate::project::reason;
 use crate::report::{line_facts, mesh_facts};
 
 pub(crate) fn run(inspect: &Inspect, printer: &Printer) -> Outcome {

@@ -13,10 +13,8 @@ mod render;
 mod sample;
 mod sample_curve;
 mod sample_surface;
-mod save;
 mod starter;
 mod timed;
-mod told;
 
 use std::process::ExitCode;
 

@@ -7,12 +7,12 @@ use serde_json::json;
 use super::Outcome;
 use super::arguments::{Hidden, Render, ShadingName};
 use super::output::Printer;
-use super::project::{reason, task};
-use super::save;
+use super::project::task;
 use crate::compile::{Options, compile};
 use crate::preview::asset::{self, Asset};
 use crate::preview::lines::{Ink, draw_lines, postscript, svg};
 use crate::preview::{Camera, Look, Moment, Picture, Projection, Shading, Stage, View, draw_picture};
+use crate::project::{reason, save};
 
 /// Pictures a second of a clip that plays.
 const RATE: f64 = 24.0;
@@ -75,7 +75,7 @@ fn picture(render: &Render, printer: &Printer) -> Result<(), Fault> {
     let folder = out.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let name =
         out.file_name().and_then(|name| name.to_str()).ok_or_else(|| usage("write the name of a file"))?;
-    save::save(folder, &[(name, &file)]).map_err(|error| {
+    save(folder, &[(name, &file)]).map_err(|error| {
         (Some(format!("cannot write {}: {}", out.display(), reason(&error))), Outcome::Files)
     })?;
     printer.result(

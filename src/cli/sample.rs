@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::Outcome;
 use super::arguments::Sample;
 use super::output::Printer;
-use super::project::{reason, task};
+use super::project::task;
 use super::sample_curve::describe;
 use super::sample_surface::describe as describe_surfaces;
 use super::timed;
@@ -16,6 +16,7 @@ use crate::compile::{self, Options};
 use crate::geometry::curve::{AnyCurve, Curve, Domain, Side};
 use crate::geometry::surface::{ExtrudedSurface, RevolvedSurface, Surface, SweptSurface, SweptWall};
 use crate::model::{Model, Recipe};
+use crate::project::reason;
 
 pub(crate) fn run(sample: &Sample, printer: &Printer) -> Outcome {
     let task = match task(&sample.file, None) {

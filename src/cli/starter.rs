@@ -7,7 +7,7 @@ use serde_json::json;
 use super::Outcome;
 use super::arguments::New;
 use super::output::Printer;
-use super::project::reason;
+use crate::project::reason;
 
 /// The document, with the name of its shape left open.
 const STARTER: &str = include_str!("starter.toml");

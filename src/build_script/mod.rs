@@ -1,0 +1,329 @@
+//! Baking from a game's `build.rs`.
+//!
+//! Promise: every document of a folder is baked into `OUT_DIR`; Cargo is told each file that was read, and the folder for new
+//! ones; diagnostics become Cargo's errors and warnings; a Rust module names every asset, node, mesh, material, clip,
+//! joint, socket and morph target, so that a name that is gone does not compile. Files whose bytes stay the same are not
+//! touched. The module's text depends on the assets and on nothing else, but for the folder of outputs.
+//! No promise: nothing is cached; each run bakes all.
+//!
+//! Cost: that of the documents, in parallel.
+
+mod module;
+mod names;
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+
+use crate::compile::{Compiled, Options, compile};
+use crate::language::source::{FileRecord, Files as _};
+use crate::project::{Task, Told, collect, reason, save};
+use module::Asset;
+
+/// The bake of a folder, from a build script.
+///
+/// ```no_run
+/// fn main() {
+///     kiln::Build::new("assets").run();
+/// }
+/// ```
+///
+/// The game then includes the module that was written:
+///
+/// ```ignore
+/// mod assets {
+///     include!(concat!(env!("OUT_DIR"), "/assets.rs"));
+/// }
+/// let bytes: &[u8] = assets::vase::BYTES;      // of assets/vase.toml
+/// let lid: &str = assets::vase::nodes::LID;    // a name that is gone does not compile
+/// ```
+#[derive(Clone, Debug)]
+pub struct Build {
+    folder: PathBuf,
+    root: Option<PathBuf>,
+    out: Option<PathBuf>,
+    parameters: Vec<(String, String)>,
+    report: bool,
+}
+
+/// What was baked.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct BuiltAssets {
+    /// The `.glb` files, in the order of their documents.
+    pub files: Vec<PathBuf>,
+    /// The Rust module.
+    pub module: PathBuf,
+    /// What a person should know though nothing is wrong, rendered.
+    pub warnings: Vec<String>,
+    /// What the bake depends on: every file that was read, and the folder.
+    pub inputs: Vec<PathBuf>,
+}
+
+/// Why nothing, or not all, was baked.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}", errors.join("\n"))]
+pub struct BuildFailure {
+    /// Each rendered with its place, as the command line does.
+    pub errors: Vec<String>,
+    /// What the bake depends on, as far as it came.
+    pub inputs: Vec<PathBuf>,
+}
+
+/// Triangles from which on a bake without optimization is worth a hint.
+const MANY: u64 = 100_000;
+
+impl Build {
+    /// A bake of all documents in a folder and in its folders, or of one document.
+    pub fn new(folder: impl Into<PathBuf>) -> Self {
+        Self { folder: folder.into(), root: None, out: None, parameters: Vec::new(), report: true }
+    }
+
+    /// The folder that no document may read outside of; without it, the folder of the documents.
+    #[must_use]
+    pub fn root(mut self, root: impl Into<PathBuf>) -> Self {
+        self.root = Some(root.into());
+        self
+    }
+
+    /// Where outputs go; without it, `OUT_DIR`.
+    #[must_use]
+    pub fn out_dir(mut self, out: impl Into<PathBuf>) -> Self {
+        self.out = Some(out.into());
+        self
+    }
+
+    /// Sets a parameter of all documents, as `--set` does.
+    #[must_use]
+    pub fn set(mut self, name: impl Into<String>, value: impl std::fmt::Display) -> Self {
+        self.parameters.push((name.into(), value.to_string()));
+        self
+    }
+
+    /// Measures nothing and checks no assertions: the fastest bake, without promises.
+    #[must_use]
+    pub fn without_report(mut self) -> Self {
+        self.report = false;
+        self
+    }
+
+    /// Bakes, and talks to Cargo on standard output. Ends the process with code 1 when there are errors, after all of
+    /// them are told.
+    pub fn run(self) {
+        let (lines, good) = match self.bake() {
+            Ok(done) => (told(&done.inputs, "warning", &done.warnings), true),
+            Err(failure) => (told(&failure.inputs, "error", &failure.errors), false),
+        };
+        say(&lines);
+        if !good {
+            std::process::exit(1);
+        }
+    }
+
+    /// Bakes, and says nothing.
+    ///
+    /// # Errors
+    /// All errors of all documents; files that cannot be read or written. What could be baked is written all the same,
+    /// but the module stays as it was.
+    pub fn bake(&self) -> Result<BuiltAssets, BuildFailure> {
+        let fail = |error: String| BuildFailure { errors: vec![error], inputs: vec![self.folder.clone()] };
+        let out = self.out.clone().or_else(|| std::env::var_os("OUT_DIR").map(PathBuf::from));
+        let out = out.ok_or_else(|| {
+            fail(
+                "OUT_DIR is not set: call this from a build script, or name a folder with `out_dir`"
+                    .to_owned(),
+            )
+        })?;
+        let root = self.root.clone().unwrap_or_else(|| self.folder.clone());
+        let tasks = collect(&self.folder, root.is_dir().then_some(root.as_path())).map_err(fail)?;
+        if tasks.is_empty() {
+            return Err(fail(format!("no document (.toml) in {}", self.folder.display())));
+        }
+        let baked: Vec<Document> = tasks.par_iter().map(|task| self.document(task)).collect();
+        let mut inputs = BTreeSet::from([self.folder.clone()]);
+        let mut errors = Vec::new();
+        let mut done = BuiltAssets { module: out.join(self.module_name()), ..BuiltAssets::default() };
+        let mut assets = Vec::new();
+        let mut triangles = 0;
+        for document in baked {
+            inputs.extend(document.inputs);
+            errors.extend(document.errors);
+            done.warnings.extend(document.warnings);
+            for (folder, compiled) in document.assets {
+                let place = if folder.is_empty() { out.clone() } else { out.join(&folder) };
+                triangles += compiled.report.as_ref().map_or(0, |report| report.totals.triangles);
+                match written(&place, &compiled) {
+                    Ok(()) => done.files.push(place.join(&compiled.file)),
+                    Err(error) => errors.push(error),
+                }
+                assets.push(Asset::new(&folder, &compiled));
+            }
+        }
+        done.inputs = inputs.into_iter().collect();
+        let relative = std::env::var_os("OUT_DIR").is_some_and(|own| Path::new(&own) == out);
+        let text = module::text(&assets, (!relative).then_some(out.as_path()));
+        match text {
+            Ok(text) if errors.is_empty() => {
+                if let Err(error) = unless_same(&done.module, text.as_bytes()) {
+                    errors.push(error);
+                }
+            }
+            Ok(_) => {}
+            Err(error) => errors.push(error),
+        }
+        if !errors.is_empty() {
+            return Err(BuildFailure { errors, inputs: done.inputs });
+        }
+        if cfg!(debug_assertions) && triangles >= MANY {
+            done.warnings.push(SLOW.to_owned());
+        }
+        Ok(done)
+    }
+
+    /// `assets.rs` for the folder `assets`.
+    fn module_name(&self) -> String {
+        let stem = self.folder.file_stem().map_or_else(|| "assets".into(), |stem| stem.to_string_lossy());
+        format!("{}.rs", names::module(&stem))
+    }
+
+    fn document(&self, task: &Task) -> Document {
+        let mut done = Document::default();
+        let (files, document) = match task.load() {
+            Ok(loaded) => loaded,
+            Err(error) => {
+                done.errors.push(format!("{}: {}", task.path, reason(&error)));
+                return done;
+            }
+        };
+        match document {
+            Ok(document) if task.found && document.is_library() => {}
+            Ok(document) => {
+                let mut told = Told::default();
+                let variants = std::iter::once(None).chain(document.variants().into_iter().map(Some));
+                for variant in variants {
+                    let options = Options {
+                        variant,
+                        overrides: self.parameters.clone(),
+                        name: task.name().to_owned(),
+                        path: task.path.clone(),
+                        no_report: !self.report,
+                        measure: false,
+                    };
+                    let folder = task.output.rsplit_once('/').map_or("", |(folder, _)| folder);
+                    let variant = options.variant.as_deref();
+                    match compile(&document, &files, &options) {
+                        Ok(mut compiled) => {
+                            let warnings =
+                                std::mem::replace(&mut compiled.warnings, document.diagnostics(Vec::new()));
+                            done.warn(&told.only_new(&document, warnings, variant));
+                            done.assets.push((folder.to_owned(), compiled));
+                        }
+                        Err(list) => done.fail(&told.only_new(&document, list, variant)),
+                    }
+                }
+            }
+            Err(list) => done.fail(&list),
+        }
+        let path = |record: FileRecord| record.found.then(|| self.shown(task, &record.path));
+        done.inputs = files.record().into_iter().filter_map(path).collect();
+        done
+    }
+
+    /// The path of an input as the build script would write it: below the folder where that is the root.
+    fn shown(&self, task: &Task, path: &str) -> PathBuf {
+        match (&self.root, self.folder.is_dir()) {
+            (Some(root), _) => root.join(path),
+            (None, true) => self.folder.join(path),
+            (None, false) => task.root.join(path),
+        }
+    }
+}
+
+/// A hint for bakes that take several times longer than they need.
+const SLOW: &str = "this bake would be five to seven times faster with optimized build scripts; write in Cargo.toml:\n\
+                    [profile.dev.build-override]\nopt-level = 3";
+
+/// What came of one document.
+#[derive(Default)]
+struct Document {
+    /// Folders below the output folder, and what goes there.
+    assets: Vec<(String, Compiled)>,
+    errors: Vec<String>,
+    warnings: Vec<String>,
+    inputs: Vec<PathBuf>,
+}
+
+impl Document {
+    fn warn(&mut self, list: &crate::language::diagnostic::Diagnostics) {
+        if !list.is_empty() {
+            self.warnings.push(list.render(false));
+        }
+    }
+
+    fn fail(&mut self, list: &crate::language::diagnostic::Diagnostics) {
+        if !list.is_empty() {
+            self.errors.push(list.render(false));
+        }
+    }
+}
+
+/// Writes an asset and its report.
+fn written(folder: &Path, compiled: &Compiled) -> Result<(), String> {
+    unless_same(&folder.join(&compiled.file), &compiled.bytes)?;
+    if let Some(report) = &compiled.report {
+        let name = format!("{}.report.json", compiled.file.trim_end_matches(".glb"));
+        let mut text = serde_json::to_vec_pretty(report).map_err(|error| error.to_string())?;
+        text.push(b'\n');
+        unless_same(&folder.join(name), &text)?;
+    }
+    Ok(())
+}
+
+/// Writes a file whose bytes are others than these; Cargo goes by the time of a file.
+fn unless_same(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    if std::fs::read(path).is_ok_and(|old| old == bytes) {
+        return Ok(());
+    }
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    save(folder, &[(&name, bytes)])
+        .map_err(|error| format!("cannot write {}: {}", path.display(), reason(&error)))
+}
+
+/// Lines for Cargo: what to watch, and what to tell.
+fn told(inputs: &[PathBuf], kind: &str, messages: &[String]) -> String {
+    let mut text = String::new();
+    for input in inputs {
+        let _ = writeln!(text, "cargo::rerun-if-changed={}", input.display());
+    }
+    // Cargo takes a message line by line.
+    for line in messages.iter().flat_map(|message| message.lines()) {
+        let _ = writeln!(text, "cargo::{kind}={line}");
+    }
+    text
+}
+
+#[expect(clippy::print_stdout, reason = "a build script talks to Cargo on standard output")]
+fn say(text: &str) {
+    print!("{text}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::told;
+
+    #[test]
+    fn cargo_takes_messages_line_by_line() {
+        let lines = told(
+            &["assets".into(), "assets/a.toml".into()],
+            "error",
+            &["error: no\n --> a.toml:1".to_owned()],
+        );
+        assert_eq!(
+            lines,
+            "cargo::rerun-if-changed=assets\ncargo::rerun-if-changed=assets/a.toml\n\
+             cargo::error=error: no\ncargo::error= --> a.toml:1\n"
+        );
+    }
+}

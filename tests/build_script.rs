@@ -1,0 +1,123 @@
+//! Baking from a build script: what is written, what Cargo is told, and that the module compiles.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use kiln::Build;
+
+const VASE: &str = "include = [\"common/clay.toml\"]\n[shape.body]\nmaterial = \"clay\"\n[shape.body.sphere]\nradius = 1\n\
+                    [variant.tall.shape.body]\nscale = [1, 2, 1]";
+const CLAY: &str = "[material.clay]\ncolor = \"#b5651d\"";
+const PAWN: &str = "[parameters]\nsize = 1\n[shape.pawn-foot.box]\nsize = [\"= size\", 1, 1]";
+
+/// A folder of assets and one for outputs.
+fn project(files: &[(&str, &str)]) -> (tempfile::TempDir, PathBuf, PathBuf) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (assets, out) = (folder.path().join("assets"), folder.path().join("out"));
+    for (name, text) in files {
+        let path = assets.join(name);
+        fs::create_dir_all(path.parent().expect("below")).expect("made");
+        fs::write(path, text).expect("written");
+    }
+    (folder, assets, out)
+}
+
+fn whole() -> (tempfile::TempDir, PathBuf, PathBuf) {
+    project(&[("vase.toml", VASE), ("common/clay.toml", CLAY), ("chess/pawn.toml", PAWN)])
+}
+
+fn modified(path: &Path) -> std::time::SystemTime {
+    fs::metadata(path).and_then(|facts| facts.modified()).expect("it is there")
+}
+
+#[test]
+fn a_folder_is_baked_with_all_that_it_reads() {
+    let (_folder, assets, out) = whole();
+    let done = Build::new(&assets).out_dir(&out).bake().expect("all is well");
+    let files = ["chess/pawn.glb", "vase.glb", "vase.tall.glb"].map(|name| out.join(name));
+    assert_eq!(done.files, files);
+    assert!(files.iter().all(|file| fs::read(file).expect("written").starts_with(b"glTF")));
+    assert!(out.join("vase.tall.report.json").is_file());
+    let read = ["", "chess/pawn.toml", "common/clay.toml", "vase.toml"];
+    assert_eq!(
+        done.inputs,
+        read.map(|name| if name.is_empty() { assets.clone() } else { assets.join(name) })
+    );
+    assert_eq!(done.module, out.join("assets.rs"));
+}
+
+/// What is the same is not touched, so that nothing that depends on it is built again.
+#[test]
+fn unchanged_files_keep_their_times() {
+    let (_folder, assets, out) = whole();
+    let build = Build::new(&assets).out_dir(&out);
+    build.bake().expect("all is well");
+    let before = ["vase.glb", "chess/pawn.glb", "assets.rs"].map(|name| modified(&out.join(name)));
+    std::thread::sleep(std::time::Duration::from_millis(20));
+    build.clone().set("size", 2).bake().expect_err("vase has no parameter `size`");
+    fs::write(assets.join("chess/pawn.toml"), PAWN.replace("size = 1\n", "size = 2\n")).expect("written");
+    build.bake().expect("all is well");
+    let after = ["vase.glb", "chess/pawn.glb", "assets.rs"].map(|name| modified(&out.join(name)));
+    assert_eq!(before[0], after[0], "the vase is the same");
+    assert!(before[1] < after[1], "the pawn is another");
+    assert!(before[2] < after[2], "and so is its box");
+}
+
+/// The module compiles, and says what the files say.
+#[test]
+fn the_module_is_rust() {
+    let (folder, assets, out) = whole();
+    Build::new(&assets).out_dir(&out).bake().expect("all is well");
+    let program = folder.path().join("game.rs");
+    let text = format!(
+        "mod assets {{ include!({:?}); }}\nfn main() {{\n\
+         assert!(assets::vase::BYTES.starts_with(b\"glTF\"));\n\
+         assert_eq!(assets::vase_tall::BOUNDS, [[-1.0, -2.0, -1.0], [1.0, 2.0, 1.0]]);\n\
+         assert_eq!(assets::chess::pawn::meshes::PAWN_FOOT, \"pawn-foot\");\n\
+         assert_eq!(assets::vase::materials::ALL, [\"clay\"]);\n\
+         assert_eq!(std::fs::read(assets::chess::pawn::PATH).unwrap(), assets::chess::pawn::BYTES);\n}}\n",
+        out.join("assets.rs").display().to_string()
+    );
+    fs::write(&program, text).expect("written");
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let game = folder.path().join("game");
+    let made = Command::new(rustc)
+        .args(["--edition", "2024", "-o"])
+        .arg(&game)
+        .arg(&program)
+        .output()
+        .expect("rustc");
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    assert!(Command::new(game).status().expect("it runs").success());
+}
+
+/// All errors of all documents, with their places; what is right is baked; the module stays.
+#[test]
+fn errors_are_told_together_and_the_module_stays() {
+    let (_folder, assets, out) = whole();
+    let build = Build::new(&assets).out_dir(&out);
+    build.bake().expect("all is well");
+    let module = fs::read(out.join("assets.rs")).expect("written");
+    fs::write(assets.join("vase.toml"), VASE.replace("radius = 1", "radios = 1")).expect("written");
+    fs::write(assets.join("chess/pawn.toml"), "[shape.a.box]\nsize = [0, 1, 1]").expect("written");
+    let failure = build.bake().expect_err("two documents are wrong");
+    let all = failure.to_string();
+    assert!(all.contains("radios") && all.contains("--> vase.toml:5:1"), "{all}");
+    assert!(all.contains("--> chess/pawn.toml:2:"), "{all}");
+    assert_eq!(fs::read(out.join("assets.rs")).expect("written"), module);
+    assert!(failure.inputs.contains(&assets.join("common/clay.toml")));
+}
+
+#[test]
+fn names_that_would_be_one_in_rust_are_told() {
+    let (_folder, assets, out) = project(&[("a-b.toml", PAWN), ("a_b.toml", PAWN)]);
+    let failure = Build::new(&assets).out_dir(&out).bake().expect_err("two assets, one name");
+    assert_eq!(failure.errors, ["a-b.glb and a_b.glb would both be `a_b` in Rust: rename one of them"]);
+    let (_folder, assets, out) = project(&[]);
+    fs::create_dir_all(&assets).expect("made");
+    let failure = Build::new(&assets).out_dir(&out).bake().expect_err("nothing to bake");
+    assert!(failure.to_string().starts_with("no document (.toml) in "), "{failure}");
+    let failure = Build::new(assets.join("none")).out_dir(&out).bake().expect_err("no such folder");
+    assert!(failure.to_string().ends_with("no such file or folder"), "{failure}");
+}
