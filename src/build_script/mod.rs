@@ -25,9 +25,7 @@ use module::Asset;
 /// The bake of a folder, from a build script.
 ///
 /// ```no_run
-/// fn main() {
-///     kiln::Build::new("assets").run();
-/// }
+/// kiln::Build::new("assets").run();
 /// ```
 ///
 /// The game then includes the module that was written:

@@ -85,7 +85,7 @@ fn lists(root: &Root) -> Vec<(&'static str, Vec<String>)> {
 /// Modules and assets in a module.
 #[derive(Default)]
 struct Folder<'a> {
-    folders: BTreeMap<String, Folder<'a>>,
+    folders: BTreeMap<String, Self>,
     asset: Option<&'a Asset>,
 }
 
