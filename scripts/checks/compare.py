@@ -174,6 +174,8 @@ def clips(asset: str, report: Facts, one: Measured) -> Iterator[Finding]:
     if one.tool not in PLAYERS:
         return
     for name, clip in report.get("clips", {}).items():
+        if one.tool == "written":
+            yield from reaches(asset, (name, clip), one)
         box = clip["bounds"]
         size = math.dist(box["min"], box["max"])
         allowed = POSED * size + (2.0 * clip["bound"] if one.tool == "blender" else 0.0)
@@ -190,6 +192,18 @@ def clips(asset: str, report: Facts, one: Measured) -> Iterator[Finding]:
                 told = [vertex["at"] for vertex in vertices]
                 seen = other["vertices"].get(mesh)
                 yield Finding(asset, f"{place}.{mesh}", one.tool, told, seen, differs(told, seen), allowed)
+
+
+def reaches(asset: str, named: tuple[str, Facts], one: Measured) -> Iterator[Finding]:
+    """How near joints come to their targets, in each frame and at worst."""
+    name, clip = named
+    for joint, task in clip.get("reaches", {}).items():
+        place = f"clips.{name}.reaches.{joint}"
+        told = [frame["distance"] for frame in task["frames"]]
+        found = one.reaches.get(name, {}).get(joint)
+        yield Finding(asset, place, one.tool, told, found, differs(told, found), COORDINATE)
+        worst = max(found or [math.inf])
+        yield Finding(asset, f"{place}.worst", one.tool, task["worst"], worst, differs(task["worst"], worst), COORDINATE)
 
 
 def turned(claimed: list[float], found: list[float] | None, size: float) -> float:

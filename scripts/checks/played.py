@@ -35,6 +35,19 @@ def clips(path: Path) -> dict[str, list[dict[str, Any]]]:
     }
 
 
+def reaches(path: Path) -> dict[str, dict[str, list[float]]]:
+    """For each clip and joint that reaches something the distances from its places, frame by frame."""
+    questions = {name: clip for name, clip in asked(path).items() if clip.get("reaches")}
+    if not questions:
+        return {}
+    stage = Stage(Document(path))
+    named = {one.get("name", ""): one for one in stage.document.json.get("animations", [])}
+    return {
+        name: {joint: stage.distances(named[name], joint, task) for joint, task in clip["reaches"].items()}
+        for name, clip in questions.items()
+    }
+
+
 class Stage:
     """A file that can be played."""
 
@@ -60,6 +73,16 @@ class Stage:
         }
         nodes = {name: worlds[self.names[name]].T.ravel().tolist() for name in question["nodes"] if name in self.names}
         return {"time": time, "nodes": nodes, "vertices": vertices}
+
+    def distances(self, animation: dict[str, Any], joint: str, task: dict[str, Any]) -> list[float]:
+        """How far a point of a joint is from its place in each frame."""
+        found = []
+        for frame in task["frames"]:
+            pose = self.pose(animation, {"time": frame["time"], "nodes": [joint], "vertices": {}})
+            matrix = np.array(pose["nodes"][joint]).reshape(4, 4).T
+            place = matrix @ np.array([*task["point"], 1.0])
+            found.append(float(np.linalg.norm(place[:3] - frame["target"])))
+        return found
 
     def world(self, index: int, locals_: list[dict[str, Any]]) -> NDArray[np.float64]:
         """A node's matrix in the scene."""

@@ -5,6 +5,7 @@ use glam::{DQuat, DVec3, DVec4};
 use super::Builder;
 use super::course::Moved;
 use super::profile::show;
+use super::reach::Frames;
 use super::skeleton::unknown_joint;
 use super::skin::chain_joints;
 use crate::geometry::curve::{Curve as _, Side};
@@ -48,7 +49,7 @@ impl Builder<'_> {
                 None => good = false,
             }
         }
-        if written.track.is_empty() {
+        if written.track.is_empty() && written.reach.is_empty() {
             let report = Diagnostic::error(Code::BadTrack, format!("clip `{name}` moves nothing"))
                 .at(span, "no track")
                 .help("write `[[clip.NAME.track]]` with `node` or `joint`, `path` and `keys`");
@@ -59,6 +60,12 @@ impl Builder<'_> {
         if !good {
             return None;
         }
+        let own: Vec<ClipTrack> = tracks.iter().map(|(track, _)| track.clone()).collect();
+        let (rate, looped) = (written.rate.value, written.r#loop.value);
+        let frames = Frames { tracks: &own, duration, rate, looped };
+        let (solved, reaches) = self.reaches(written, &frames)?;
+        let reached = written.reach.first().map_or(span, |reach| reach.span);
+        tracks.extend(solved.into_iter().map(|track| (track, reached)));
         if written.limits.value == LimitRule::Error {
             self.check_limits(&tracks, duration)?;
         }
@@ -75,12 +82,16 @@ impl Builder<'_> {
             tolerance: written.tolerance.map(|tolerance| tolerance.value * self.model.frame.unit),
             rate: written.rate.value,
             tracks: tracks.into_iter().map(|(track, _)| track).collect(),
+            reaches,
             events,
         })
     }
 
     fn duration(&mut self, written: &spec::Clip, span: Span) -> Option<f64> {
-        let keys = written.track.iter().flat_map(|track| track.keys.iter().chain(&track.speed));
+        let tracks = written.track.iter().flat_map(|track| track.keys.iter().chain(&track.speed));
+        let reaches = written.reach.iter();
+        let reaches = reaches.flat_map(|one| one.keys.iter().chain(&one.speed).chain(&one.rotate_keys));
+        let keys = tracks.chain(reaches);
         let mut last = keys.map(|key| key.at.value).fold(0.0, f64::max);
         for curve in written.track.iter().filter_map(|track| track.curve.as_ref()) {
             let curve = self.curve_of(curve)?;
@@ -177,7 +188,7 @@ impl Builder<'_> {
     }
 
     /// The skeleton that a clip names, or the only one.
-    fn clip_skeleton(&mut self, clip: &spec::Clip, joint: &Sp<String>) -> Option<usize> {
+    pub(super) fn clip_skeleton(&mut self, clip: &spec::Clip, joint: &Sp<String>) -> Option<usize> {
         if let Some(skeleton) = &clip.skeleton {
             return self.named_skeleton(&skeleton.value.0);
         }

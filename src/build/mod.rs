@@ -37,6 +37,7 @@ mod polygon;
 mod primitive;
 mod profile;
 mod quadric;
+mod reach;
 mod ruled;
 mod scaling;
 mod shape;

@@ -15,7 +15,9 @@ pub use deform::{AxialBending, Bending, PathBending};
 pub use material::{
     AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, Texture, Wrap,
 };
-pub use motion::{Clip, ClipTrack, NamedSkeleton, Skin, Socket, SocketHandle, Space, Target, WeightRule};
+pub use motion::{
+    Clip, ClipTrack, NamedSkeleton, ReachTask, Skin, Socket, SocketHandle, Space, Target, WeightRule,
+};
 pub use shape::{Density, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode};
 pub use solid::{Hollow, KeptSide, PlaneCut, SolidOperation, SolidRecipe};
 pub use subdivide::SubdivisionRecipe;

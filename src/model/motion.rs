@@ -84,8 +84,25 @@ pub struct Clip {
     pub rate: f64,
     /// What moves.
     pub tracks: Vec<ClipTrack>,
+    /// What joints reach, for the report.
+    pub reaches: Vec<ReachTask>,
     /// What happens: seconds and names, in the order of time.
     pub events: Vec<(f64, String)>,
+}
+
+/// A point of a joint that is brought to places.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReachTask {
+    /// Index in [`Model::skeletons`](super::Model::skeletons).
+    pub skeleton: usize,
+    /// Index of the joint.
+    pub joint: usize,
+    /// The point in the joint's rest frame.
+    pub point: DVec3,
+    /// So far from its place it counts as there, metres.
+    pub tolerance: f64,
+    /// For each frame its time, the place, metres, and the distance that solving left, metres.
+    pub frames: Vec<(f64, DVec3, f64)>,
 }
 
 /// One part of a node or joint in motion.
@@ -156,6 +173,36 @@ impl ClipTrack {
                 Space::Document => frame.scale(value.truncate()).extend(0.0),
                 Space::Rest | Space::File => value,
             },
+        }
+    }
+
+    /// What a value of the course makes of a place at rest: a translation or scale (x, y, z), or a rotation (x, y, z, w).
+    #[must_use]
+    pub fn composed(&self, rest: &Transform, value: DVec4, frame: &Frame) -> DVec4 {
+        let value = self.converted(value, frame);
+        match self.course.path() {
+            Path::Translation => {
+                let turn = if self.space == Space::Rest { rest.rotation } else { DQuat::IDENTITY };
+                (rest.translation + turn * value.truncate()).extend(0.0)
+            }
+            Path::Rotation => {
+                let turned = DQuat::from_vec4(value);
+                // Along a curve the rest's own rotation comes first.
+                let along = self.space == Space::File;
+                let whole = if along { turned * rest.rotation } else { rest.rotation * turned };
+                DVec4::from(whole.normalize())
+            }
+            Path::Scale => (rest.scale * value.truncate()).extend(0.0),
+        }
+    }
+
+    /// Puts a value of the course into a place.
+    pub fn put(&self, place: &mut Transform, rest: &Transform, value: DVec4, frame: &Frame) {
+        let value = self.composed(rest, value, frame);
+        match self.course.path() {
+            Path::Translation => place.translation = value.truncate(),
+            Path::Rotation => place.rotation = DQuat::from_vec4(value),
+            Path::Scale => place.scale = value.truncate(),
         }
     }
 

@@ -1,12 +1,12 @@
 //! Skeletons into nodes, skins into weights, clips into keys.
 
-use glam::{DAffine3, DQuat, DVec3, DVec4};
+use glam::{DAffine3, DVec3, DVec4};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
 use super::{Loose, RealizeError};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::number::Bounds;
-use crate::model::{Clip, ClipTrack, Model, NamedSkeleton, ShapeHandle, Space, Target, WeightRule};
+use crate::model::{Clip, ClipTrack, Model, NamedSkeleton, ShapeHandle, Target, WeightRule};
 use crate::motion::{
     Influences, Joint, Moving, Path, Rig, Track, Transform, Wanted, Weights, envelope_weights, reduce,
     rigid_weights, weights_of,
@@ -331,21 +331,7 @@ fn moving<'a>(model: &'a Model, rig: &Rig, track: &'a ClipTrack, node: usize) ->
     let playing = Track::new(&track.course);
     let (path, rest) = (track.course.path(), rig.rest[node]);
     let exact = move |time: f64| {
-        let value = track.converted(playing.at(time), &model.frame);
-        let value = match path {
-            Path::Translation => {
-                let turn = if track.space == Space::Rest { rest.rotation } else { DQuat::IDENTITY };
-                (rest.translation + turn * value.truncate()).extend(0.0)
-            }
-            Path::Rotation => {
-                let turned = DQuat::from_vec4(value);
-                // Along a curve the rest's own rotation comes first.
-                let whole =
-                    if track.space == Space::File { turned * rest.rotation } else { rest.rotation * turned };
-                DVec4::from(whole.normalize())
-            }
-            Path::Scale => (rest.scale * value.truncate()).extend(0.0),
-        };
+        let value = track.composed(&rest, playing.at(time), &model.frame);
         if value.is_finite() { value } else { at_rest(&rest, path) }
     };
     let steps = track.course.stepped().then(|| track.course.stops());

@@ -15,7 +15,7 @@ mod quadrics;
 pub use assertion::{Check, Fault};
 pub use deviation::measure_deviation;
 pub use joints::JointFacts;
-pub use motion::{ClipFacts, PoseFacts, PosedVertex, SkinFacts};
+pub use motion::{ClipFacts, PoseFacts, PosedVertex, ReachFacts, ReachFrame, SkinFacts};
 pub use quadrics::QuadricFacts;
 
 use indexmap::IndexMap;
@@ -226,7 +226,7 @@ pub fn measure(
         facts.insert(known.name.clone(), shape_facts(&file, known, (model, *handle), measured)?);
     }
     let nodes = nodes(&file);
-    let (skins, clips) = motion::motion(&file, written)?;
+    let (skins, clips) = motion::motion(&file, written, model)?;
     Ok(Report {
         kiln: env!("CARGO_PKG_VERSION"),
         asset: model.name.clone(),

@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::Extent;
 use crate::geometry::number::Bounds;
 use crate::gltf::{Read, ReadAnimation, ReadChannel, ReadError, ReadInfluences, ReadSkin, Written};
+use crate::model::{Model, ReachTask};
 use crate::motion::{Path, Transform, slerp};
 
 /// Poses of each clip.
@@ -52,8 +53,40 @@ pub struct ClipFacts {
     pub bound: f64,
     /// The box of all vertices at the keys and at 64 times between, metres.
     pub bounds: Extent,
+    /// What joints reach, by the names of their nodes.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub reaches: IndexMap<String, ReachFacts>,
     /// The scene at some times.
     pub poses: Vec<PoseFacts>,
+}
+
+/// How near a point of a joint comes to where it shall be.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct ReachFacts {
+    /// The point, in the joint's space, metres.
+    pub point: [f64; 3],
+    /// So far from its place it counts as there, metres.
+    pub tolerance: f64,
+    /// The greatest distance of all frames in the file, metres.
+    pub worst: f64,
+    /// Frames in which solving brought it there.
+    pub reached: usize,
+    /// Each frame that was solved, played from the file.
+    pub frames: Vec<ReachFrame>,
+}
+
+/// A frame of what a joint reaches.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct ReachFrame {
+    /// Seconds.
+    pub time: f64,
+    /// Where the point shall be, metres.
+    pub target: [f64; 3],
+    /// How far from there solving left it, metres.
+    pub solved: f64,
+    /// How far from there it is in the file, metres: what solving left and what keys leave out.
+    pub distance: f64,
 }
 
 /// The scene at a time.
@@ -102,7 +135,7 @@ struct Stage<'a> {
 ///
 /// # Errors
 /// When the bytes cannot be read back.
-pub(super) fn motion(file: &Read<'_>, written: &Written) -> Result<Motion, ReadError> {
+pub(super) fn motion(file: &Read<'_>, written: &Written, model: &Model) -> Result<Motion, ReadError> {
     if file.root.skins.is_empty() && file.root.animations.is_empty() {
         return Ok((IndexMap::new(), IndexMap::new()));
     }
@@ -122,6 +155,7 @@ pub(super) fn motion(file: &Read<'_>, written: &Written) -> Result<Motion, ReadE
                 tolerance: known.tolerance,
                 bound: known.bound,
                 bounds: stage.bounds(animation, duration),
+                reaches: stage.reaches(animation, model, &known.name),
                 poses: (0..POSES).map(|k| stage.pose(animation, time(k))).collect(),
             },
         );
@@ -209,6 +243,37 @@ impl<'a> Stage<'a> {
             (carried.name.clone(), (0..count).step_by(step).map(posed).collect())
         };
         PoseFacts { time, nodes, vertices: self.carried.iter().map(some).collect() }
+    }
+
+    /// How near the points of joints come to their places, frame by frame.
+    fn reaches(&self, animation: &ReadAnimation, model: &Model, clip: &str) -> IndexMap<String, ReachFacts> {
+        let clip = model.clips.iter().find(|known| known.name == clip);
+        let facts = |task: &ReachTask| {
+            // Joints and sockets follow the nodes of the document, skeleton by skeleton.
+            let before = model.skeletons[..task.skeleton].iter();
+            let before: usize = before.map(|one| one.skeleton.joints.len() + one.sockets.len()).sum();
+            let node = model.nodes.len() + before + task.joint;
+            let frame = |(time, place, left): &(f64, DVec3, f64)| {
+                let found = self.worlds(animation, *time)[node].transform_point3(task.point);
+                ReachFrame {
+                    time: *time,
+                    target: place.to_array(),
+                    solved: *left,
+                    distance: found.distance(*place),
+                }
+            };
+            let frames: Vec<ReachFrame> = task.frames.iter().map(frame).collect();
+            let facts = ReachFacts {
+                point: task.point.to_array(),
+                tolerance: task.tolerance,
+                worst: frames.iter().map(|frame| frame.distance).fold(0.0, f64::max),
+                reached: frames.iter().filter(|frame| frame.solved <= task.tolerance).count(),
+                frames,
+            };
+            (self.name(node), facts)
+        };
+        let tasks = clip.into_iter().flat_map(|clip| &clip.reaches);
+        tasks.filter(|task| !task.frames.is_empty()).map(facts).collect()
     }
 
     /// Where the vertices of a mesh are.

@@ -277,3 +277,67 @@ fn tolerance_buys_keys() {
         before = facts.keys;
     }
 }
+
+/// A chain with limits whose tip follows a circle: in the file it is there in every frame, and within its limits.
+#[test]
+fn tips_follow_their_targets_in_the_file() {
+    let text = "[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.chain.arm]\npoints = [[0, 0, 0], [0, 0.5, 0], [0, 1, 0], [0, 1.4, 0]]\nlimits = { x = [-100, 100], y = [-30, 30], z = [-80, 80] }\n[clip.c]\nloop = true\ntolerance = 1e-4\nduration = 2\n[[clip.c.reach]]\njoint = \"arm-3\"\nreach = \"required\"\nformula = [\"= 0.6 * cos(180 * t)\", \"= 0.8 + 0.2 * sin(360 * t)\", \"= 0.6 * sin(180 * t)\"]\n";
+    let baked = bake(text);
+    let facts = clip(&baked, "c");
+    let tip = &facts.reaches["arm-3"];
+    assert_eq!((tip.frames.len(), tip.reached), (121, 121));
+    assert!(tip.worst < 2e-4, "{}", tip.worst);
+    for frame in &tip.frames {
+        let (sin, cos) = kiln::geometry::number::sin_cos_degrees(180.0 * frame.time);
+        assert!(apart(frame.target, [0.6 * cos, 0.8 + 0.4 * sin * cos, 0.6 * sin]) < 1e-6);
+    }
+    // The other tool chain: the written keys, taken apart here.
+    let animation = &baked.glb.list("animations")[0];
+    for (channel, sampler) in animation["channels"]
+        .as_array()
+        .expect("channels")
+        .iter()
+        .zip(animation["samplers"].as_array().expect("samplers"))
+    {
+        assert_eq!(channel["target"]["path"], "rotation");
+        let rest = baked.glb.list("nodes")[count(&channel["target"]["node"])].get("rotation").cloned();
+        let rest = rest
+            .map_or([0.0, 0.0, 0.0, 1.0], |rest| [0, 1, 2, 3].map(|k| rest[k].as_f64().expect("a number")));
+        for key in baked.glb.accessor(count(&sampler["output"])) {
+            // Bones along y have no rotation at rest, so a key is the joint's own rotation.
+            assert!(rest[3] > 0.999_999, "{rest:?}");
+            let [x, y, z, w] = <[f64; 4]>::try_from(key).expect("four");
+            let sine = (2.0 * (z * w - x * y)).clamp(-1.0, 1.0);
+            let flat = (1.0 - sine * sine).sqrt();
+            let twist = (2.0 * (x * z + y * w) / flat).clamp(-1.0, 1.0);
+            assert!(sine.abs() < 0.984_82 && twist.abs() < 0.500_01, "beyond the limits: {sine} {twist}");
+        }
+    }
+}
+
+/// The root is carried by a node that moves: targets stand still in the scene all the same.
+#[test]
+fn targets_are_in_the_scene() {
+    let text = "[shape.b.box]\nsize = [1, 1, 1]\n[node.cart]\nrotate = [0, 30, 0]\n[node.b]\nshape = \"b\"\n[skeleton.s]\nparent = \"cart\"\n[skeleton.s.chain.arm]\npoints = [[0, 0, 0], [0, 1, 0], [0, 2, 0]]\n[[clip.c.track]]\nnode = \"cart\"\npath = \"translation\"\naxis = \"x\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 1 }]\n[[clip.c.reach]]\njoint = \"arm-2\"\ntarget = [0.5, 1.2, 0.3]\nreach = \"required\"\n";
+    let baked = bake(text);
+    let tip = &clip(&baked, "c").reaches["arm-2"];
+    assert!(tip.reached == 61 && tip.frames.len() == 61 && tip.worst < 1e-3, "{tip:?}");
+    assert!(tip.frames.iter().all(|frame| apart(frame.target, [0.5, 1.2, 0.3]) < 1e-12));
+}
+
+/// A leg whose knee bends toward its pole, in centimetres with z up.
+#[test]
+fn poles_and_units() {
+    let text = "unit = \"cm\"\nup = \"z\"\n[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.chain.leg]\npoints = [[0, 0, 100], [0, 0, 50], [0, 0, 0]]\n[clip.c]\nduration = 1\n[[clip.c.reach]]\njoint = \"leg-2\"\npole = [0, -100, 50]\nformula = [0, 0, \"= 30 + 10 * t\"]\nreach = \"required\"\n";
+    let baked = bake(text);
+    let facts = clip(&baked, "c");
+    assert!(facts.reaches["leg-2"].worst < 2e-4);
+    for pose in &facts.poses {
+        // Before the document's -y is the file's +z.
+        let knee = at(pose, "leg-2");
+        let ankle = 0.3 + 0.1 * pose.time;
+        let half = (1.0 - ankle) / 2.0;
+        let aside = (0.25 - half * half).sqrt();
+        assert!(apart(knee, [0.0, 1.0 - half, aside]) < 0.01, "{}: {knee:?}", pose.time);
+    }
+}

@@ -379,6 +379,8 @@ codes! {
     PastTheEnd = "K0970";
     /// a motion is not followed within its tolerance
     LooseMotion = "K0971";
+    /// a joint does not reach its target
+    Unreached = "K0972";
 }
 
 impl std::fmt::Display for Code {

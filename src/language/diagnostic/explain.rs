@@ -467,6 +467,9 @@ examples! {
     PastTheEnd: "A node that moves along an open curve at given speeds must not be past its end before the clip is over. On a closed curve it goes round.",
         "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[clip.c]\nduration = 2\n[[clip.c.track]]\nnode = \"a\"\nalong = { line = { from = [0, 0], to = [1, 0] } }\nspeed = [{ at = 0, value = 1 }]" =>
         "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[clip.c]\nduration = 2\n[[clip.c.track]]\nnode = \"a\"\nalong = { line = { from = [0, 0], to = [1, 0] } }\nspeed = [{ at = 0, value = 0.5 }]";
+    Unreached: "By inverse kinematics joints are turned, within their limits, so that a point comes to its target. This one does not: it is further away than the bones are long, or the limits do not let them bend so. What is baked comes as near as was found.",
+        "[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.joint.a]\nhead = [0, 0, 0]\ntail = [0, 1, 0]\n[skeleton.s.joint.b]\nparent = \"a\"\ntail = [0, 2, 0]\n[clip.c]\nduration = 1\n[[clip.c.reach]]\njoint = \"b\"\ntarget = [3, 0, 0]" =>
+        "[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.joint.a]\nhead = [0, 0, 0]\ntail = [0, 1, 0]\n[skeleton.s.joint.b]\nparent = \"a\"\ntail = [0, 2, 0]\n[clip.c]\nduration = 1\n[[clip.c.reach]]\njoint = \"b\"\ntarget = [1, 1, 0]";
     LooseMotion: "The motion changes faster than it is sampled, or jumps: between two samples a vertex is further from its exact place than the tolerance. Jumps belong into keys with `between = \"step\"`.",
         "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[clip.c]\nduration = 1\n[[clip.c.track]]\nnode = \"a\"\npath = \"translation\"\naxis = \"x\"\nformula = \"= if(t < 0.503, 0, 1)\"" =>
         "[node.a]\nshape = \"b\"\n[shape.b.box]\nsize = [1, 1, 1]\n[clip.c]\nduration = 1\n[[clip.c.track]]\nnode = \"a\"\npath = \"translation\"\naxis = \"x\"\nbetween = \"step\"\nkeys = [{ at = 0, value = 0 }, { at = 0.503, value = 1 }]";

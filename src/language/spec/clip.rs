@@ -10,6 +10,7 @@ use crate::language::spec::construct::{choices, table};
 use crate::language::spec::formula::Formula;
 use crate::language::spec::kind::choice;
 use crate::language::spec::point::read_numbers;
+use crate::language::spec::reach::Reach;
 use crate::language::spec::reader::{Read, Reader};
 use crate::language::spec::reference::{CurveReference, NodeName, SkeletonName};
 use crate::language::spec::scalar::finite;
@@ -40,6 +41,8 @@ table! {
         limits: Sp<LimitRule> = LimitRule::Error;
         /// What moves, as `[[clip.NAME.track]]`.
         track: Vec<Sp<ClipTrack>> = Vec::new();
+        /// What joints reach by turning those before them, as `[[clip.NAME.reach]]`.
+        reach: Vec<Sp<Reach>> = Vec::new();
         /// What happens at some time, as `[[clip.NAME.event]]`; for the game, in the animation's extras.
         event: Vec<ClipEvent> = Vec::new();
     }

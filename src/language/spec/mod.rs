@@ -42,6 +42,7 @@ mod polygon;
 mod primitive;
 mod profile;
 mod quadric;
+mod reach;
 mod reader;
 mod reference;
 mod resolve;
@@ -118,6 +119,7 @@ pub use primitive::{
 };
 pub use profile::{Axis, Bevel, BevelEnds, BevelForm, Extrude, Fill, Revolve};
 pub use quadric::{Quadric, Within};
+pub use reach::{Reach, ReachRule};
 pub use reference::{
     CurveReference, Family, FieldReference, MapReference, MaterialName, NodeName, ShapeName, ShapeReference,
     SkeletonName,

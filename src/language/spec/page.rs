@@ -164,6 +164,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
             "clip",
             "track",
             "key",
+            "reach",
             "event",
         ],
     ),
