@@ -203,7 +203,9 @@ def reaches(asset: str, named: tuple[str, Facts], one: Measured) -> Iterator[Fin
         found = one.reaches.get(name, {}).get(joint)
         yield Finding(asset, place, one.tool, told, found, differs(told, found), COORDINATE)
         worst = max(found or [math.inf])
-        yield Finding(asset, f"{place}.worst", one.tool, task["worst"], worst, differs(task["worst"], worst), COORDINATE)
+        yield Finding(
+            asset, f"{place}.worst", one.tool, task["worst"], worst, differs(task["worst"], worst), COORDINATE
+        )
 
 
 def turned(claimed: list[float], found: list[float] | None, size: float) -> float:
