@@ -111,6 +111,12 @@ pub(crate) struct Bake {
     /// Write no report, and check no assertions
     #[arg(long)]
     pub(crate) no_report: bool,
+    /// Write nothing; fail where a file is not what would be written
+    #[arg(long, conflicts_with = "depfile")]
+    pub(crate) check: bool,
+    /// Write which files each output was made of, for Make and Ninja
+    #[arg(long, value_name = "FILE")]
+    pub(crate) depfile: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -1,5 +1,6 @@
 //! `kiln bake`: documents into files.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -11,9 +12,11 @@ use serde_json::json;
 
 use super::Outcome;
 use super::arguments::Bake;
+use super::dependencies::Dependencies;
 use super::output::Printer;
 use super::project::tasks;
 use crate::compile::{Compiled, Options, compile};
+use crate::language::source::Files as _;
 use crate::project::{Task, Told, reason, save};
 use crate::report::{DeviationFacts, Kind, Report};
 
@@ -24,13 +27,16 @@ pub(crate) fn run(bake: &Bake, printer: &Printer) -> Outcome {
         printer.failure(&message, Some("bake them in separate runs with different --out folders"));
         return Outcome::Usage;
     }
-    if let Err(error) = std::fs::create_dir_all(&bake.out) {
+    if bake.check {
+        // Nothing is written, the folder neither.
+    } else if let Err(error) = std::fs::create_dir_all(&bake.out) {
         let message = format!("cannot make the output folder {}: {}", bake.out.display(), reason(&error));
         printer.failure(&message, None);
         return Outcome::Files;
     }
     let progress = progress(tasks.len(), printer);
-    let worker = Worker { bake, printer, progress: &progress, turn: Mutex::new(Turns::default()) };
+    let turn = Mutex::new(Turns::default());
+    let worker = Worker { bake, printer, progress: &progress, turn, dependencies: Dependencies::default() };
     let outcome = if let [task] = tasks.as_slice() {
         // Waking a second thread costs more than a small document takes.
         worker.work(0, task)
@@ -38,7 +44,20 @@ pub(crate) fn run(bake: &Bake, printer: &Printer) -> Outcome {
         in_parallel(bake, &tasks, &worker)
     };
     progress.finish_and_clear();
-    outcome
+    outcome.max(write_dependencies(bake, &worker.dependencies, printer))
+}
+
+fn write_dependencies(bake: &Bake, dependencies: &Dependencies, printer: &Printer) -> Outcome {
+    let Some(file) = &bake.depfile else { return Outcome::Good };
+    let folder = file.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    match save(folder, &[(&name, dependencies.text().as_bytes())]) {
+        Ok(()) => Outcome::Good,
+        Err(error) => {
+            printer.failure(&format!("cannot write {}: {}", file.display(), reason(&error)), None);
+            Outcome::Files
+        }
+    }
 }
 
 fn in_parallel(bake: &Bake, tasks: &[Task], worker: &Worker<'_>) -> Outcome {
@@ -99,14 +118,15 @@ struct Worker<'a> {
     printer: &'a Printer,
     progress: &'a ProgressBar,
     turn: Mutex<Turns>,
+    dependencies: Dependencies,
 }
 
 impl Worker<'_> {
     fn work(&self, index: usize, task: &Task) -> Outcome {
         self.progress.set_message(task.path.clone());
         let mut messages = Vec::new();
-        let outcome =
-            catch_unwind(AssertUnwindSafe(|| self.document(task, &mut messages))).unwrap_or_else(|_| {
+        let outcome = catch_unwind(AssertUnwindSafe(|| self.document((index, task), &mut messages)))
+            .unwrap_or_else(|_| {
                 messages.push(Message::Failure(format!(
                     "{}: Kiln failed inside; please report this document as a bug",
                     task.path
@@ -138,7 +158,7 @@ impl Worker<'_> {
     }
 
     /// Bakes a document and its variants.
-    fn document(&self, task: &Task, messages: &mut Vec<Message>) -> Outcome {
+    fn document(&self, (index, task): (usize, &Task), messages: &mut Vec<Message>) -> Outcome {
         let (files, document) = match task.load() {
             Ok(loaded) => loaded,
             Err(error) => {
@@ -162,6 +182,7 @@ impl Worker<'_> {
         }
         let mut outcome = Outcome::Good;
         let mut told = Told::default();
+        let mut outputs = Vec::new();
         let variants = std::iter::once(None).chain(document.variants().into_iter().map(Some));
         for variant in variants {
             let options = Options {
@@ -176,7 +197,7 @@ impl Worker<'_> {
                 Ok(mut compiled) => {
                     compiled.warnings =
                         told.only_new(&document, compiled.warnings, options.variant.as_deref());
-                    self.write(task, compiled, messages)
+                    self.put(task, compiled, (messages, &mut outputs))
                 }
                 Err(list) => {
                     let list = told.only_new(&document, list, options.variant.as_deref());
@@ -185,19 +206,55 @@ impl Worker<'_> {
                 }
             });
         }
+        if self.bake.depfile.is_some() {
+            let found = files.record().into_iter().filter(|record| record.found);
+            let inputs = found.map(|record| shown(task, &record.path)).collect();
+            self.dependencies.add(index, outputs, inputs);
+        }
         outcome
     }
 
-    fn write(&self, task: &Task, compiled: Compiled, messages: &mut Vec<Message>) -> Outcome {
+    /// Writes an asset, or holds it against the files that there are.
+    fn put(
+        &self,
+        task: &Task,
+        compiled: Compiled,
+        (messages, outputs): (&mut Vec<Message>, &mut Vec<String>),
+    ) -> Outcome {
         let folder = match task.output.rsplit_once('/') {
             Some((folder, _)) => self.bake.out.join(folder),
             None => self.bake.out.clone(),
         };
         let target = folder.join(&compiled.file);
-        if let Err(error) = write_asset(&folder, &compiled) {
-            messages.push(Message::Failure(format!("cannot write {}: {}", target.display(), reason(&error))));
+        let failed = |verb: &str, error: std::io::Error| {
+            Message::Failure(format!("cannot {verb} {}: {}", target.display(), reason(&error)))
+        };
+        let files = match files_of(&compiled) {
+            Ok(files) => files,
+            Err(error) => {
+                messages.push(failed("write", error));
+                return Outcome::Files;
+            }
+        };
+        let list: Vec<(&str, &[u8])> =
+            files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_ref())).collect();
+        if self.bake.check {
+            let differs = |name: &&str| {
+                Message::Failure(format!("{} is not what is baked", folder.join(name).display()))
+            };
+            let other = |(name, bytes): &&(&str, &[u8])| {
+                std::fs::read(folder.join(name)).ok().as_deref() != Some(*bytes)
+            };
+            let before = messages.len();
+            messages.extend(list.iter().filter(other).map(|(name, _)| differs(name)));
+            if messages.len() > before {
+                return Outcome::Errors;
+            }
+        } else if let Err(error) = save(&folder, &list) {
+            messages.push(failed("write", error));
             return Outcome::Files;
         }
+        outputs.extend(files.iter().map(|(name, _)| folder.join(name).display().to_string()));
         let object = json!({
             "asset": target.display().to_string(),
             "spec": task.path,
@@ -258,17 +315,21 @@ fn size(bytes: usize) -> String {
     }
 }
 
-/// Writes the file and its report.
-fn write_asset(folder: &Path, compiled: &Compiled) -> std::io::Result<()> {
-    let report_name = format!("{}.report.json", compiled.file.trim_end_matches(".glb"));
-    let mut text = Vec::new();
+/// The file and its report.
+fn files_of(compiled: &Compiled) -> std::io::Result<Vec<(String, Cow<'_, [u8]>)>> {
+    let mut files = vec![(compiled.file.clone(), Cow::Borrowed(compiled.bytes.as_slice()))];
     if let Some(report) = &compiled.report {
-        text = serde_json::to_vec_pretty(report)?;
+        let mut text = serde_json::to_vec_pretty(report)?;
         text.push(b'\n');
+        files.push((format!("{}.report.json", compiled.file.trim_end_matches(".glb")), Cow::Owned(text)));
     }
-    let mut files = vec![(compiled.file.as_str(), compiled.bytes.as_slice())];
-    if compiled.report.is_some() {
-        files.push((&report_name, &text));
-    }
-    save(folder, &files)
+    Ok(files)
+}
+
+/// The path of an input from the working directory, where it lies in that.
+fn shown(task: &Task, path: &str) -> String {
+    let whole = task.root.join(path);
+    let here = std::env::current_dir().and_then(|here| here.canonicalize());
+    let below = here.ok().and_then(|here| whole.strip_prefix(here).ok().map(Path::to_path_buf));
+    below.unwrap_or(whole).display().to_string()
 }

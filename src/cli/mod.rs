@@ -5,6 +5,7 @@
 mod arguments;
 mod bake;
 mod check;
+mod dependencies;
 mod describe;
 mod inspect;
 mod output;

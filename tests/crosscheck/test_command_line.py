@@ -5,7 +5,10 @@ from __future__ import annotations
 import base64
 import gzip
 import json
+import os
 import shutil
+import subprocess
+import time
 from typing import TYPE_CHECKING
 
 import pytest
@@ -13,7 +16,6 @@ import pytest
 from inputs.picture import Picture
 
 if TYPE_CHECKING:
-    import subprocess
     from pathlib import Path
 
     from kiln import Kiln
@@ -73,6 +75,42 @@ def test_variants_bake_one_more_asset_each(kiln: Kiln) -> None:
     kiln.bake(spec)
     assert "model.tall.glb" in written(kiln)
     assert kiln.baked("model.tall").shape("s")["volume"] == pytest.approx(3)
+
+
+def test_check_fails_where_a_file_is_not_what_is_baked(kiln: Kiln) -> None:
+    kiln.write(BOX)
+    absent = kiln.run("bake", "model.toml", "--out", "out", "--check")
+    assert absent.returncode == 1
+    assert "out/model.glb is not what is baked" in absent.stderr
+    assert not (kiln.folder / "out").exists()
+    kiln.bake(BOX)
+    assert kiln.run("bake", "model.toml", "--out", "out", "--check").returncode == 0
+    file = kiln.folder / "out" / "model.glb"
+    file.write_bytes(file.read_bytes()[:-1] + b"x")
+    old = file.read_bytes()
+    done = kiln.run("bake", "model.toml", "--out", "out", "--check")
+    assert (done.returncode, file.read_bytes()) == (1, old)
+    assert "report.json" not in done.stderr
+
+
+def test_depfile_is_read_by_make(kiln: Kiln) -> None:
+    """Make bakes once, not again, and again after an included file with a space in its name has changed."""
+    (kiln.folder / "common parts").mkdir()
+    (kiln.folder / "common parts" / "clay.toml").write_text("[material.clay]\n")
+    kiln.write('include = ["common parts/clay.toml"]\n[shape.s]\nmaterial = "clay"\n[shape.s.box]\nsize = [1, 1, 1]\n')
+    bake = f"{kiln.program} bake model.toml --depfile out/model.d --quiet"
+    rule = f"out/model.glb: model.toml\n\t{bake}\n-include out/model.d\n"
+    (kiln.folder / "Makefile").write_text(rule)
+
+    def made() -> bool:
+        done = subprocess.run(["make", "out/model.glb"], cwd=kiln.folder, capture_output=True, text=True, check=True)
+        return "up to date" not in done.stdout
+
+    assert [made(), made()] == [True, False]
+    later = time.time() + 10
+    os.utime(kiln.folder / "common parts" / "clay.toml", (later, later))
+    assert made()
+    assert "common\\ parts/clay.toml" in (kiln.folder / "out" / "model.d").read_text()
 
 
 def test_set_overrides_a_parameter(kiln: Kiln) -> None:
