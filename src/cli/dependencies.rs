@@ -9,13 +9,19 @@ use std::sync::{Mutex, PoisonError};
 
 /// Outputs and inputs of all documents, by their turn.
 #[derive(Debug, Default)]
-pub(crate) struct Dependencies(Mutex<BTreeMap<usize, (Vec<String>, Vec<String>)>>);
+pub(crate) struct Dependencies(Mutex<BTreeMap<usize, Rule>>);
+
+#[derive(Debug)]
+struct Rule {
+    outputs: Vec<String>,
+    inputs: Vec<String>,
+}
 
 impl Dependencies {
     /// Notes what a document was made into, and of what.
     pub(crate) fn add(&self, turn: usize, outputs: Vec<String>, inputs: Vec<String>) {
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        all.insert(turn, (outputs, inputs));
+        all.insert(turn, Rule { outputs, inputs });
     }
 
     /// One rule for each document that has outputs, and an empty one for each input, so that Make goes on when one is
@@ -24,7 +30,7 @@ impl Dependencies {
         let all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut text = String::new();
         let mut known: Vec<&String> = Vec::new();
-        for (outputs, inputs) in all.values().filter(|(outputs, _)| !outputs.is_empty()) {
+        for Rule { outputs, inputs } in all.values().filter(|rule| !rule.outputs.is_empty()) {
             let list =
                 |paths: &[String]| paths.iter().map(|path| escaped(path)).collect::<Vec<_>>().join(" ");
             let _ = writeln!(text, "{}: {}", list(outputs), list(inputs));
