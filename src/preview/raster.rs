@@ -127,26 +127,23 @@ pub(super) fn draw<T: Send>(
             }
         }
     }
-    let tile = |number: usize| {
-        let (left, top) = (number % across * SIDE, number / across * SIDE);
-        let mut tile = Tile {
-            left,
-            top,
-            width: SIDE.min(width - left),
-            height: SIDE.min(height - top),
-            seen: Vec::new(),
-            veils: Vec::new(),
-        };
+    let empty = || Tile { left: 0, top: 0, width: 0, height: 0, seen: Vec::new(), veils: Vec::new() };
+    let made = |tile: &mut Tile, number: usize| {
+        (tile.left, tile.top) = (number % across * SIDE, number / across * SIDE);
+        (tile.width, tile.height) = (SIDE.min(width - tile.left), SIDE.min(height - tile.top));
+        tile.seen.clear();
         let nothing = Seen { depth: f32::INFINITY, name: u32::MAX };
-        tile.seen = vec![nothing; tile.width * tile.height * pattern.len()];
+        tile.seen.resize(tile.width * tile.height * pattern.len(), nothing);
+        tile.veils.clear();
         for face in &bins[number] {
-            ready[*face as usize].cover(&mut tile, pattern, opacity);
+            ready[*face as usize].cover(tile, pattern, opacity);
         }
         let order = |a: &Veil, b: &Veil| b.depth.total_cmp(&a.depth).then(a.name.cmp(&b.name));
         tile.veils.sort_by(|a, b| a.pixel.cmp(&b.pixel).then_with(|| order(a, b)));
-        finish(&tile)
+        finish(tile)
     };
-    (0..bins.len()).into_par_iter().map(tile).collect()
+    // A thread takes one tile's memory for all of its tiles.
+    (0..bins.len()).into_par_iter().map_init(empty, made).collect()
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "places are at most 2^30 parts of pixels")]
