@@ -34,9 +34,16 @@ impl Builder<'_> {
     }
 
     fn clip(&mut self, name: &str, written: &spec::Clip, span: Span) -> Option<Clip> {
-        let duration = self.duration(written, span)?;
+        let imported = match &written.import {
+            Some(import) => Some(self.imported_motion(written, import)?),
+            None => None,
+        };
+        let lasting = imported.as_ref().map_or(0.0, |(lasting, _)| *lasting);
+        let duration = self.duration(written, lasting, span)?;
         self.check_samples(written, duration, span)?;
-        let mut tracks: Vec<(ClipTrack, Span)> = Vec::new();
+        let place = written.import.as_ref().map_or(span, |import| import.file.span);
+        let imported = imported.into_iter().flat_map(|(_, tracks)| tracks);
+        let mut tracks: Vec<(ClipTrack, Span)> = imported.map(|track| (track, place)).collect();
         let mut good = true;
         for track in &written.track {
             match self.track(written, track, duration) {
@@ -49,7 +56,7 @@ impl Builder<'_> {
                 None => good = false,
             }
         }
-        if written.track.is_empty() && written.reach.is_empty() {
+        if written.track.is_empty() && written.reach.is_empty() && written.import.is_none() {
             let report = Diagnostic::error(Code::BadTrack, format!("clip `{name}` moves nothing"))
                 .at(span, "no track")
                 .help("write `[[clip.NAME.track]]` with `node` or `joint`, `path` and `keys`");
@@ -87,12 +94,12 @@ impl Builder<'_> {
         })
     }
 
-    fn duration(&mut self, written: &spec::Clip, span: Span) -> Option<f64> {
+    fn duration(&mut self, written: &spec::Clip, lasting: f64, span: Span) -> Option<f64> {
         let tracks = written.track.iter().flat_map(|track| track.keys.iter().chain(&track.speed));
         let reaches = written.reach.iter();
         let reaches = reaches.flat_map(|one| one.keys.iter().chain(&one.speed).chain(&one.rotate_keys));
         let keys = tracks.chain(reaches);
-        let mut last = keys.map(|key| key.at.value).fold(0.0, f64::max);
+        let mut last = keys.map(|key| key.at.value).fold(lasting, f64::max);
         for curve in written.track.iter().filter_map(|track| track.curve.as_ref()) {
             let curve = self.curve_of(curve)?;
             last = last.max(curve.evaluate(curve.domain().end, Side::Before).point.x);

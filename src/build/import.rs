@@ -10,6 +10,15 @@ use crate::language::source::{FileError, Span, join};
 use crate::language::spec::{FilePath, Import, Sp, Up};
 use crate::model::{AlphaMode, Material, MaterialHandle, Recipe};
 
+/// The rotation from a file's axes to a document's.
+pub(super) fn axes_between(file: Up, document: Up) -> DMat3 {
+    match (file, document) {
+        (Up::Z, Up::Y) => DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y),
+        (Up::Y, Up::Z) => DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y),
+        _ => DMat3::IDENTITY,
+    }
+}
+
 /// Most notes of one file that are told one by one.
 const NOTES: usize = 4;
 
@@ -20,13 +29,7 @@ impl Builder<'_> {
         let materials = self.imported_materials(import, &imported);
         let mut mesh = imported.mesh;
         let up = import.up.map_or_else(|| default_up(&import.file), |up| up.value);
-        let turned = up == Up::Z && self.spec.up == Up::Y;
-        let lowered = up == Up::Y && self.spec.up == Up::Z;
-        let axes = match (turned, lowered) {
-            (true, _) => DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y),
-            (_, true) => DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y),
-            _ => DMat3::IDENTITY,
-        };
+        let axes = axes_between(up, self.spec.up);
         mesh.transform(&DAffine3::from_mat3(axes * import.scale.value));
         if let Err(error) = mesh.validate() {
             self.report(Diagnostic::error(Code::BadMesh, error.to_string()).at(span, "this mesh"));

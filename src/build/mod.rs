@@ -25,6 +25,7 @@ mod joined;
 mod loft;
 mod map;
 mod material;
+mod motion_file;
 mod moving;
 mod node;
 mod operation;

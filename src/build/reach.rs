@@ -10,7 +10,7 @@ use super::Builder;
 use super::course::Moved;
 use super::profile::show;
 use super::skeleton::unknown_joint;
-use crate::geometry::number::{floor_count, single};
+use crate::geometry::number::{floor_count, floor_large, single};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, ReachRule, Sp};
@@ -64,6 +64,7 @@ impl Builder<'_> {
         turning.sort_unstable();
         turning.dedup();
         self.check_free(&bones, skeleton, &turning, (frames.tracks, first.span))?;
+        self.check_work(turning.len(), frames, first.span)?;
         let (times, poses, found) = self.solve(&bones, skeleton, (&tasks, &turning), frames);
         self.check_reached(&bones, &tasks, (&times, &found))?;
         let tracks = turned(&bones, skeleton, (&turning, &times, &poses), self.model.frame.unit);
@@ -168,6 +169,19 @@ impl Builder<'_> {
             .at(place, "it turns for this")
             .help("write `from` to begin the chain after it, or leave the track out");
         self.report(report);
+        None
+    }
+
+    /// So many poses of joints are solved that it ends in a minute even where no target is reached.
+    fn check_work(&mut self, turning: usize, frames: &Frames<'_>, span: Span) -> Option<()> {
+        const MOST: u64 = 100_000;
+        let poses = floor_large(frames.duration * frames.rate) * turning as u64;
+        if poses <= MOST {
+            return Some(());
+        }
+        let message = format!("this clip solves {poses} poses of joints, and the limit is {MOST}");
+        let report = Diagnostic::error(Code::LimitPassed, message).at(span, "too many");
+        self.report(report.help("write a lower `rate`, a shorter clip, or `from` for shorter chains"));
         None
     }
 

@@ -14,18 +14,18 @@ use crate::motion::{Bone, Envelope, Limits, Range, Skeleton, SkeletonFault, Tran
 
 /// A joint on its way from the text, in the document's unit and axes.
 #[derive(Clone)]
-struct Draft {
-    name: String,
-    parent: Option<Sp<String>>,
-    head: Option<DVec3>,
-    tail: DVec3,
-    roll: f64,
-    limits: [Option<Range>; 3],
-    slide: [Option<Range>; 3],
-    stiffness: f64,
-    radius: Option<f64>,
-    falloff: Option<f64>,
-    span: Span,
+pub(super) struct Draft {
+    pub(super) name: String,
+    pub(super) parent: Option<Sp<String>>,
+    pub(super) head: Option<DVec3>,
+    pub(super) tail: DVec3,
+    pub(super) roll: f64,
+    pub(super) limits: [Option<Range>; 3],
+    pub(super) slide: [Option<Range>; 3],
+    pub(super) stiffness: f64,
+    pub(super) radius: Option<f64>,
+    pub(super) falloff: Option<f64>,
+    pub(super) span: Span,
 }
 
 impl Builder<'_> {
@@ -44,8 +44,11 @@ impl Builder<'_> {
         written: &spec::Skeleton,
         span: Span,
     ) -> Option<NamedSkeleton> {
-        let mut drafts: Vec<Draft> =
-            written.joint.iter().map(|(name, joint)| joint_draft(name, joint)).collect();
+        let mut drafts: Vec<Draft> = match &written.import {
+            Some(import) => self.imported_joints(import)?,
+            None => Vec::new(),
+        };
+        drafts.extend(written.joint.iter().map(|(name, joint)| joint_draft(name, joint)));
         for (name, chain) in &written.chain {
             drafts.extend(self.chain_drafts(name, chain)?);
         }

@@ -1,9 +1,10 @@
-//! The import stage: bytes of other programs' files into polygon meshes and image facts.
+//! The import stage: bytes of other programs' files into polygon meshes, image facts and motions.
 //!
 //! Promise: no input makes a reader panic, hang, or take memory out of proportion to its size; what is refused is
 //! refused with the line, the value and the limit; what is passed over is told in a [`Note`]. Readers open nothing
 //! themselves: other files come through a door that the caller passes in.
 
+pub mod bvh;
 mod error;
 mod foreign;
 pub mod heights;

@@ -341,3 +341,21 @@ fn poles_and_units() {
         assert!(apart(knee, [0.0, 1.0 - half, aside]) < 0.01, "{}: {knee:?}", pose.time);
     }
 }
+
+/// A file's joints and motion: the arm, which points to x, rises by its rotation about z; the root goes up.
+#[test]
+fn motions_of_files_are_played() {
+    let motion = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 1 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\nJOINT LeftArm\n{\nOFFSET 0 0.5 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0.4 0 0\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 1\n0 0 0 0 0 0 0 0 0\n0 0.1 0 0 0 0 30 0 0\n";
+    let text = "unit = \"cm\"\nup = \"z\"\n[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.import]\nfile = \"wave.bvh\"\nscale = 100\n[skeleton.s.socket.hand]\njoint = \"left-arm\"\n[clip.wave.import]\nfile = \"wave.bvh\"\n";
+    let files = super::inputs().with("spec.toml", text).with("wave.bvh", motion);
+    let document = kiln::language::Document::load("spec.toml", &files).expect("it is read");
+    let compiled =
+        kiln::compile(&document, &files, &Options::default()).unwrap_or_else(|found| panic!("{found}"));
+    let facts = &compiled.report.expect("a report").clips["wave"];
+    let last = facts.poses.last().expect("poses");
+    assert!(apart(at(last, "hips"), [0.0, 1.1, 0.0]) < 1e-6 && facts.duration == 1.0, "{last:?}");
+    let arm = last.nodes["left-arm"];
+    let (sin, cos) = kiln::geometry::number::sin_cos_degrees(30.0);
+    assert!(apart([arm[4], arm[5], arm[6]], [cos, sin, 0.0]) < 1e-6, "{arm:?}");
+    assert!(apart(at(last, "left-arm"), [0.0, 1.6, 0.0]) < 1e-6, "{arm:?}");
+}

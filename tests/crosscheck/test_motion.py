@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gzip
 import json
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -175,3 +177,57 @@ def least_turn(along: np.ndarray) -> np.ndarray:
     if sine < 1e-12:
         return np.eye(3) if cosine > 0 else np.diag([1.0, -1.0, -1.0])
     return Rotation.from_rotvec(axis / sine * np.arctan2(sine, cosine)).as_matrix()
+
+
+@pytest.mark.cases
+def test_a_recorded_walk(kiln: Kiln, cases: Path) -> None:
+    """A motion capture of 120 frames: places of all joints in the sampled frames as scipy and three.js have them."""
+    reference = json.loads(gzip.decompress((cases / "bvh" / "01_01_first120.fk.json.gz").read_bytes()))
+    (kiln.folder / "walk.bvh").write_bytes(gzip.decompress((cases / "bvh" / "01_01_first120.bvh.gz").read_bytes()))
+    baked = kiln.bake(
+        '[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.import]\nfile = "walk.bvh"\nscale = 0.1\n'
+        '[clip.walk]\ntolerance = 1e-5\n[clip.walk.import]\nfile = "walk.bvh"\n'
+    )
+    names = {node.get("name") for node in baked.document.json["nodes"]}
+    stage = played.Stage(baked.document)
+    (animation,) = baked.document.json["animations"]
+    checked = 0
+    for sample in reference["samples"]:
+        time = float(np.float32(sample["frame"] * reference["frame_time"]))
+        told = [kebab(joint["name"]) for joint in reference["joints"]]
+        pose = stage.pose(animation, {"time": time, "nodes": [name for name in told if name in names], "vertices": {}})
+        for name, place in zip(told, sample["world_position"], strict=True):
+            if name in pose["nodes"]:
+                off = np.abs(np.array(pose["nodes"][name][12:15]) - 0.1 * np.array(place)).max()
+                assert off < 5e-5, (name, sample["frame"], off)
+                checked += 1
+    assert checked >= 31 * len(reference["samples"])
+
+
+@pytest.mark.cases
+def test_damaged_motions_are_refused(kiln: Kiln, cases: Path) -> None:
+    """Cut off anywhere, or with flipped bits: a diagnostic with the line, or a motion that can be read."""
+    whole = gzip.decompress((cases / "bvh" / "01_01_first120.bvh.gz").read_bytes())
+    spec = (
+        '[shape.b.box]\nsize = [1, 1, 1]\n[skeleton.s.import]\nfile = "walk.bvh"\n'
+        '[clip.walk.import]\nfile = "walk.bvh"\n'
+    )
+    kiln.write(spec)
+    dice = np.random.default_rng(7)
+    for cut in dice.integers(0, len(whole) - 400, 12):
+        (kiln.folder / "walk.bvh").write_bytes(whole[:cut])
+        done = kiln.run("bake", "model.toml", "--out", "out")
+        assert done.returncode == 1, cut
+        assert "is no BVH motion, line" in done.stdout + done.stderr, cut
+    for place in dice.integers(0, len(whole), 12):
+        damaged = bytearray(whole)
+        damaged[place] ^= 1 << int(dice.integers(0, 7))
+        (kiln.folder / "walk.bvh").write_bytes(damaged)
+        done = kiln.run("bake", "model.toml", "--out", "out")
+        assert done.returncode in (0, 1), place
+        assert "panicked" not in done.stdout + done.stderr, place
+
+
+def kebab(name: str) -> str:
+    """`LeftUpLeg` is `left-up-leg`."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "-", name).lower()

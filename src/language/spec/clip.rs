@@ -8,6 +8,7 @@ use crate::language::source::Span;
 use crate::language::spec::check::Check;
 use crate::language::spec::construct::{choices, table};
 use crate::language::spec::formula::Formula;
+use crate::language::spec::import::{FilePath, Up};
 use crate::language::spec::kind::choice;
 use crate::language::spec::point::read_numbers;
 use crate::language::spec::reach::Reach;
@@ -41,10 +42,25 @@ table! {
         limits: Sp<LimitRule> = LimitRule::Error;
         /// What moves, as `[[clip.NAME.track]]`.
         track: Vec<Sp<ClipTrack>> = Vec::new();
+        /// The motion of a file, as `[clip.NAME.import]`: tracks for all of its joints.
+        import: Option<Sp<MotionImport>>;
         /// What joints reach by turning those before them, as `[[clip.NAME.reach]]`.
         reach: Vec<Sp<Reach>> = Vec::new();
         /// What happens at some time, as `[[clip.NAME.event]]`; for the game, in the animation's extras.
         event: Vec<ClipEvent> = Vec::new();
+    }
+}
+
+table! {
+    /// The motion of a BVH file, for a skeleton whose joints have the names of the file's in kebab-case and stand at rest as
+    /// they do there.
+    "motion import" pub MotionImport {
+        /// The file; the path is relative to this document and stays inside the project.
+        file: Sp<FilePath>;
+        /// What one unit of the file is in the document's unit; as the skeleton's import has it when it is not written.
+        scale: Option<Sp<f64>> => Check::above(0.0);
+        /// The axis that points up in the file; as the skeleton's import has it when it is not written.
+        up: Option<Sp<Up>>;
     }
 }
 

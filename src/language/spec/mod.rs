@@ -75,7 +75,7 @@ pub use bezier_triangle::BezierTriangles;
 pub use bspline::{BSpline, Nurbs};
 pub use clip::{
     AngleOrder, Between as KeyBetween, Clip, ClipEvent, ClipTrack, Direction, Formulas, KeyValue, LimitRule,
-    MotionKey, MotionPath, RotationWay,
+    MotionImport, MotionKey, MotionPath, RotationWay,
 };
 pub use combine::{Array, Copy, Group, Mirror, Plane};
 pub use conic::{Conic, ConicForm, Hyperbola, Parabola};
@@ -127,7 +127,7 @@ pub use reference::{
 pub use ruled::{End, Ruled, Translational};
 pub use scaling::{Blend, Factor, ScaleStation, Scaling};
 pub use shape::{Shape, ShapeDefinition, ShapeOptions, Smoothing, Uv};
-pub use skeleton::{AxisRanges, Chain, Joint as SkeletonJoint, MirrorAxis, Skeleton, Socket};
+pub use skeleton::{AxisRanges, Chain, Joint as SkeletonJoint, MirrorAxis, Skeleton, SkeletonImport, Socket};
 pub use skin::{Skin, SkinWeight, WeightRule};
 pub use solid::{Cut, Hull, Keep, MinkowskiRound, Shell, SolidFormula, SolidSet, WallSide};
 pub use solid_expression::SolidExpression;
@@ -143,6 +143,6 @@ pub use trimmed::Trimmed;
 pub use whole::schema;
 pub use wire::Wire;
 
-pub(crate) use name::check_name;
+pub(crate) use name::{check_name, kebab};
 pub(crate) use reader::backtick;
 pub(crate) use section::{default_text, read_spec};

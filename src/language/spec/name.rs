@@ -16,7 +16,7 @@ pub(crate) fn check_name(what: &str, name: &str, span: Span) -> Option<Diagnosti
     let report = Diagnostic::error(Code::BadName, message)
         .at(span, "expected lower-case letters and digits, with `-` between words")
         .note(format!("a name begins with a letter and has at most {LONGEST} letters"));
-    let better = kebab(name);
+    let better = in_kebab(name);
     Some(if is_kebab(&better) { report.suggest(span, &better, format!("write `{better}`")) } else { report })
 }
 
@@ -27,8 +27,13 @@ fn is_kebab(name: &str) -> bool {
     name.len() <= LONGEST && name.starts_with(|c: char| c.is_ascii_lowercase()) && name.split('-').all(word)
 }
 
+/// The name in kebab-case; none where its letters make none.
+pub(crate) fn kebab(name: &str) -> Option<String> {
+    Some(in_kebab(name)).filter(|name| is_kebab(name))
+}
+
 /// The name in kebab-case, as far as its letters allow.
-fn kebab(name: &str) -> String {
+fn in_kebab(name: &str) -> String {
     let mut words = String::new();
     let mut lower = false;
     for letter in name.chars() {
@@ -43,7 +48,7 @@ fn kebab(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{is_kebab, kebab};
+    use super::{in_kebab, is_kebab};
 
     #[test]
     fn names_are_kebab_case() {
@@ -53,6 +58,6 @@ mod tests {
         for bad in ["", "A", "a_b", "-a", "a-", "a--b", "2a", "a b", "ä", &"a".repeat(65)] {
             assert!(!is_kebab(bad), "{bad}");
         }
-        assert_eq!(kebab("OuterWall_2 x"), "outer-wall-2-x");
+        assert_eq!(in_kebab("OuterWall_2 x"), "outer-wall-2-x");
     }
 }

@@ -156,6 +156,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
         &[
             "skeleton",
             "joint",
+            "skeleton import",
             "chain",
             "axis ranges",
             "socket",
@@ -165,6 +166,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
             "track",
             "key",
             "reach",
+            "motion import",
             "event",
         ],
     ),

@@ -8,6 +8,7 @@ use crate::language::source::Span;
 use crate::language::spec::check::Check;
 use crate::language::spec::construct::{choices, table};
 use crate::language::spec::deform::CoordinateAxis;
+use crate::language::spec::import::{FilePath, Up};
 use crate::language::spec::name::check_name;
 use crate::language::spec::reader::{Reader, backtick};
 use crate::language::spec::reference::{CurveReference, NodeName};
@@ -26,10 +27,25 @@ table! {
         /// Makes the other side: each joint, chain and socket with the word `left` in its name is made once more with `right`,
         /// mirrored in the plane across this axis; and the other way round.
         mirror: Option<Sp<MirrorAxis>>;
+        /// Joints from a file, as `[skeleton.NAME.import]`.
+        import: Option<Sp<SkeletonImport>>;
         /// The name of the node that carries the skeleton.
         parent: Option<Sp<NodeName>>;
     }
     checked check
+}
+
+table! {
+    /// The joints of a BVH file. Their names are written in kebab-case: `LeftUpLeg` is `left-up-leg`. Bones run to end sites or
+    /// to the middle of the joints they carry.
+    "skeleton import" pub SkeletonImport {
+        /// The file; the path is relative to this document and stays inside the project.
+        file: Sp<FilePath>;
+        /// What one unit of the file is in the document's unit.
+        scale: Sp<f64> = 1.0 => Check::above(0.0);
+        /// The axis that points up in the file.
+        up: Sp<Up> = Up::Y;
+    }
 }
 
 choices! {
@@ -131,7 +147,7 @@ impl Skeleton {
         for (what, name, span) in names {
             reader.diagnostics.extend(check_name(what, name, span));
         }
-        if self.joint.is_empty() && self.chain.is_empty() {
+        if self.joint.is_empty() && self.chain.is_empty() && self.import.is_none() {
             let report = Diagnostic::error(Code::MissingField, "this skeleton has no joint")
                 .at(table, "no joint")
                 .help("write `[skeleton.NAME.joint.JOINT]` with a `head` and a `tail`");
