@@ -18,7 +18,10 @@ impl Refiner<'_> {
             }
             let (a, b) = (self.skin.from(half), self.skin.to(half));
             if self.skin.point(a).distance(self.skin.point(b)) < short {
-                let _ = self.draw(half) || self.draw(self.skin.twin(half));
+                // Two corners in one place are one, in which more than three edges of the surface meet.
+                let twins = [a, b].iter().all(|end| self.skin.kind(*end) == Kind::Corner);
+                let _ =
+                    self.draw(half) || self.draw(self.skin.twin(half)) || (twins && self.draw_anyway(half));
             }
         }
     }
