@@ -133,6 +133,8 @@ enum Finding {
     Empty,
     /// The surface in it is one graph.
     Graph,
+    /// The surface in it is one graph, which may have kinks.
+    Crest,
     /// More must be found out, and can be: the field is smooth there.
     Smooth,
     /// The field may have kinks.
@@ -247,10 +249,14 @@ impl Finder<'_> {
         if value.low > 0.0 || value.high < 0.0 || (finite && self.is_far(cell, &study)) {
             return Finding::Empty;
         }
-        if value.quality < Quality::Smooth || !finite {
-            return Finding::Kinked;
+        // Slopes at kinks are those of all sides: a surface that none of them turns much is a graph with kinks.
+        let graph = finite && value.quality >= Quality::Continuous && study.turns_little();
+        match (graph, finite && value.quality == Quality::Smooth) {
+            (true, true) => Finding::Graph,
+            (true, false) => Finding::Crest,
+            (false, true) => Finding::Smooth,
+            (false, false) => Finding::Kinked,
         }
-        if study.turns_little() { Finding::Graph } else { Finding::Smooth }
     }
 
     /// Whether the value in the middle is further from 0 than slopes can lead within the cell: the mean value form, which
@@ -272,6 +278,7 @@ impl Finder<'_> {
         match finding {
             Finding::Empty => 0,
             Finding::Graph => level(self.search.largest),
+            Finding::Crest => level(self.search.largest / 2.0),
             // Bounds on slopes near kinks are finite and say little.
             Finding::Smooth if self.kinks => SAMPLED + 2,
             Finding::Smooth => DEEPEST - 2,

@@ -49,10 +49,29 @@ impl Probe<'_> {
         }
     }
 
-    /// Makes the edges of the surface edges of triangles; whether there are any.
-    pub(super) fn add_edges(&self, skin: &mut Skin) -> bool {
-        let edges = skin.edges().map(|half| (skin.from(half), skin.to(half)));
-        let crossed: Vec<(u32, u32)> = edges.filter(|edge| self.jump_along(skin, *edge).is_some()).collect();
+    /// Makes the edges of the surface edges of triangles, where they are not yet; whether there are any. Looks at the
+    /// triangles that `chosen` names, or at all.
+    pub(super) fn add_edges(&self, skin: &mut Skin, chosen: Option<&[u32]>) -> bool {
+        let halves: Vec<u32> = match chosen {
+            None => skin.edges().collect(),
+            Some(triangles) => {
+                let alive = triangles.iter().filter(|triangle| skin.is_alive(**triangle));
+                let mut halves: Vec<u32> = alive
+                    .flat_map(|triangle| 3 * triangle..3 * triangle + 3)
+                    .map(|half| half.min(skin.twin(half)))
+                    .collect();
+                halves.sort_unstable();
+                halves.dedup();
+                halves
+            }
+        };
+        // Between two points on edges normals have no one side to be taken from.
+        let smooth = |point: u32| skin.kind(point) == Kind::Smooth;
+        let edges = halves.into_iter().map(|half| (skin.from(half), skin.to(half)));
+        let crossed: Vec<(u32, u32)> = edges
+            .filter(|(from, to)| smooth(*from) || smooth(*to))
+            .filter(|edge| self.jump_along(skin, *edge).is_some())
+            .collect();
         let first = mesh::index(skin.points.len());
         self.add_corners(skin, &crossed);
         for edge in &crossed {
@@ -156,13 +175,6 @@ impl Probe<'_> {
         let sides = [skin.across(half), skin.across(skin.twin(half))];
         let [one, other] = sides.map(|side| self.normal_towards(middle, skin.point(side), ASIDE));
         one.dot(other) < cos_degrees(JUMP)
-    }
-
-    /// Splits an edge of triangles that lies on an edge of the surface; the new point lies there too.
-    pub(super) fn split_sharp(&self, skin: &mut Skin, half: u32) -> Option<u32> {
-        let place = self.on_edge(skin, half)?;
-        let normal = skin.normal(skin.from(half));
-        Some(skin.split(half, (place, normal, Kind::Edge)))
     }
 
     /// The place on the surface's edge across from the middle of an edge of triangles.

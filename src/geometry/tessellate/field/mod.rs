@@ -184,11 +184,12 @@ impl<'a> Maker<'a> {
         }
         let most = skin.triangles.len().max(self.limit.saturating_mul(MOST_SPARE).min(MOST_TRIANGLES));
         if self.kinks {
-            self.probe.add_edges(&mut skin);
+            self.probe.add_edges(&mut skin, None);
         }
         let target = self.tolerance / MARGIN;
         let mut refiner =
             Refiner { probe: self.probe, skin, tolerance: target, limit: most, changed: Changed::default() };
+        if std::env::var("KILN_DUMP").is_ok() { dump(&refiner.skin, &[], "/tmp/f/start.obj"); }
         if !refiner.run() || self.probe.is_spent() {
             if self.probe.is_spent() || most <= self.limit {
                 return Err(TessellateError::TooMuchWork);
@@ -203,6 +204,8 @@ impl<'a> Maker<'a> {
             }
             let far = self.too_far(&refiner, &mut checked);
             let crossed = if far.is_empty() { self.crossed(&refiner) } else { Vec::new() };
+            eprintln!("round {round}: far {} crossed {} triangles {}", far.len(), crossed.len(), refiner.skin.triangles.len());
+            if std::env::var("KILN_DUMP").is_ok() { dump(&refiner.skin, &crossed, &format!("/tmp/f/round{round}.obj")); }
             if far.is_empty() && crossed.is_empty() {
                 return Ok((refiner, checked.greatest * MARGIN));
             }
@@ -217,12 +220,13 @@ impl<'a> Maker<'a> {
         }
         let crossed = self.crossed(&refiner);
         let far = self.too_far(&refiner, &mut checked);
-        match crossed.first().or(far.first()) {
+        // What is too far off is split until it crosses.
+        match far.first().or(crossed.first()) {
             None => Ok((refiner, checked.greatest * MARGIN)),
             Some(triangle) => {
                 let corners = refiner.skin.triangles[*triangle as usize];
                 let place = refiner.skin.point(corners[0]);
-                Err(TessellateError::Unsound { place, crossing: !crossed.is_empty() })
+                Err(TessellateError::Unsound { place, crossing: far.is_empty() })
             }
         }
     }
@@ -298,20 +302,16 @@ impl<'a> Maker<'a> {
 
     /// Makes triangles smaller that are too far off, and sounder those that cross.
     fn repair(&self, refiner: &mut Refiner<'_>, far: &[u32], crossed: &[u32], round: u32) {
+        if self.kinks && round % 3 == 2 && self.probe.add_edges(&mut refiner.skin, Some(far)) {
+            // What was hidden between the old points was an edge.
+            refiner.tidy();
+            return;
+        }
         for triangle in far {
             if !refiner.skin.is_alive(*triangle) {
                 continue;
             }
-            let corners = refiner.skin.triangles[*triangle as usize].map(|corner| refiner.skin.point(corner));
-            let length = |k: usize| corners[k].distance_squared(corners[(k + 1) % 3]);
-            let longest =
-                [1, 2].into_iter().fold(0, |best, k| if length(k) > length(best) { k } else { best });
-            refiner.split_edge(3 * triangle + mesh::index(longest));
-        }
-        if !far.is_empty() && self.kinks && round.is_multiple_of(3) {
-            // What was hidden between the old points may be an edge.
-            self.probe.add_edges(&mut refiner.skin);
-            refiner.tidy();
+            refiner.split_any(*triangle);
         }
         refiner.turn();
         refiner.untangle(crossed, round);
@@ -329,4 +329,17 @@ struct Checked {
 /// Whether a point lies on an edge of the surface.
 fn is_on_edge(skin: &Skin, index: u32) -> bool {
     skin.kind(index) != Kind::Smooth
+}
+
+fn dump(skin: &Skin, crossed: &[u32], path: &str) {
+    use std::fmt::Write;
+    let mut out = String::new();
+    for p in &skin.points { let _ = writeln!(out, "v {} {} {}", p.x, p.y, p.z); }
+    for (k, t) in skin.triangles.iter().enumerate() {
+        if t[0] == skin::NONE { continue; }
+        let c = crossed.contains(&(k as u32));
+        let _ = writeln!(out, "usemtl {}\nf {} {} {}", if c {"bad"} else {"ok"}, t[0]+1, t[1]+1, t[2]+1);
+    }
+    for h in skin.edges() { if skin.is_sharp(h) { let _ = writeln!(out, "l {} {}", skin.from(h)+1, skin.to(h)+1); } }
+    let _ = std::fs::write(path, out);
 }

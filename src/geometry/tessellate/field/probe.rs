@@ -33,7 +33,7 @@ impl Work {
 }
 
 /// How often parts of fields may be asked for one surface.
-const BUDGET: u64 = 1 << 26;
+const BUDGET: u64 = 1 << 27;
 
 /// Share of the size at which a step is the last: the next would be its square.
 const LAST_STEP: f64 = 1e-8;

@@ -10,6 +10,7 @@
 
 use glam::DVec3;
 
+use super::edges::ASIDE;
 use super::probe::Probe;
 use super::skin::{Kind, Skin, before, next};
 use crate::geometry::mesh;
@@ -124,7 +125,8 @@ impl Refiner<'_> {
                 for side in sides {
                     touched[side] = true;
                 }
-                if let Some(point) = self.split_edge(half) {
+                let split = self.split_edge(half);
+                if let Some(point) = split.or_else(|| self.split_any(half / 3)) {
                     any = true;
                     self.touch(point);
                 }
@@ -175,17 +177,57 @@ impl Refiner<'_> {
         self.probe.on_edge(&self.skin, half).map_or(0.0, |place| place.distance(a.midpoint(b)))
     }
 
+    /// Splits an edge where that folds no triangle over: beside an edge of the surface the nearest place to the middle may
+    /// lie behind it.
     pub(super) fn split_edge(&mut self, half: u32) -> Option<u32> {
-        if self.skin.is_sharp(half) {
-            return self.probe.split_sharp(&mut self.skin, half);
-        }
-        let (a, b) = (self.skin.point(self.skin.from(half)), self.skin.point(self.skin.to(half)));
-        let length = a.distance(b);
-        if length < 1e-7 * self.probe.size {
+        let (from, to) = (self.skin.from(half), self.skin.to(half));
+        let (a, b) = (self.skin.point(from), self.skin.point(to));
+        let (place, normal, kind) = if self.skin.is_sharp(half) {
+            (self.probe.on_edge(&self.skin, half)?, self.skin.normal(from), Kind::Edge)
+        } else {
+            let length = a.distance(b);
+            if length < 1e-7 * self.probe.size {
+                return None;
+            }
+            let (place, normal) = self.probe.settle(a.midpoint(b), 0.5 * length)?;
+            (place, normal, Kind::Smooth)
+        };
+        let by_edges = [from, to, self.skin.across(half), self.skin.across(self.skin.twin(half))]
+            .iter()
+            .any(|corner| self.skin.kind(*corner) != Kind::Smooth);
+        if by_edges && !self.stays_upright(half, (place, normal, kind)) {
             return None;
         }
-        let (place, normal) = self.probe.settle(a.midpoint(b), 0.5 * length)?;
-        Some(self.skin.split(half, (place, normal, Kind::Smooth)))
+        Some(self.skin.split(half, (place, normal, kind)))
+    }
+
+    /// Whether the four triangles that a new point on an edge makes are no steeper than the two before, or steep.
+    fn stays_upright(&self, half: u32, (place, normal, kind): (DVec3, DVec3, Kind)) -> bool {
+        let skin = &self.skin;
+        [half, skin.twin(half)].into_iter().all(|half| {
+            let [a, b, c] = [skin.from(half), skin.to(half), skin.across(half)];
+            let before = upright(self.corners([a, b, c]));
+            [[c, a], [b, c]].into_iter().all(|ends| {
+                let middle = (place + skin.point(ends[0]) + skin.point(ends[1])) / 3.0;
+                let own = match kind {
+                    Kind::Smooth => normal,
+                    Kind::Edge | Kind::Corner => self.probe.normal_towards(place, middle, ASIDE),
+                };
+                let corner =
+                    |point: u32| (skin.point(point), self.probe.corner_normal(skin, point, middle));
+                upright([(place, own), corner(ends[0]), corner(ends[1])]) >= UPRIGHT.min(before)
+            })
+        })
+    }
+
+    /// Splits the longest edge of a triangle that can be split.
+    pub(super) fn split_any(&mut self, triangle: u32) -> Option<u32> {
+        let mut sides = [0, 1, 2].map(|k| {
+            let half = 3 * triangle + k;
+            (self.skin.point(self.skin.from(half)).distance(self.skin.point(self.skin.to(half))), half)
+        });
+        sides.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
+        sides.into_iter().find_map(|(_, half)| self.split_edge(half))
     }
 
     /// Draws edges together as long as triangles stay within the tolerance; how many there were.
@@ -391,7 +433,7 @@ impl Refiner<'_> {
         for _ in 0..2 {
             self.turn();
             self.draw_short();
-            self.unfold();
+            self.unfold(f64::INFINITY);
             self.collapse();
             self.smooth();
         }

@@ -7,6 +7,9 @@ use super::refine::Refiner;
 use super::skin::{Kind, NONE, before, next};
 use crate::geometry::mesh;
 
+/// Corners that are nearer than this share of the size are one.
+const ONE_PLACE: f64 = 1e-6;
+
 impl Refiner<'_> {
     /// Draws edges together that are shorter than anything that can be seen; triangles beside them have no shape to lose.
     pub(super) fn draw_short(&mut self) {
@@ -18,22 +21,20 @@ impl Refiner<'_> {
             }
             let (a, b) = (self.skin.from(half), self.skin.to(half));
             if self.skin.point(a).distance(self.skin.point(b)) < short {
-                // Two corners in one place are one, in which more than three edges of the surface meet.
-                let twins = [a, b].iter().all(|end| self.skin.kind(*end) == Kind::Corner);
-                let _ =
-                    self.draw(half) || self.draw(self.skin.twin(half)) || (twins && self.draw_anyway(half));
+                let _ = self.draw_either(half);
             }
         }
     }
 
     /// Puts edges of the surface in order where first triangles had too little room for them: what runs back the way it
-    /// came is drawn together, spurs are drawn in, and what is left without an edge is smooth.
-    pub(super) fn unfold(&mut self) {
+    /// came is drawn together, spurs are drawn in, and what is left without an edge is smooth. What is longer than `most`
+    /// is left as it is.
+    pub(super) fn unfold(&mut self, most: f64) {
         for _ in 0..6 {
             let mut any = false;
             for point in 0..mesh::index(self.skin.points.len()) {
                 if self.skin.starts[point as usize] != NONE && self.skin.kind(point) != Kind::Smooth {
-                    any |= self.unfold_at(point);
+                    any |= self.unfold_at(point, most);
                 }
             }
             if !any {
@@ -42,7 +43,7 @@ impl Refiner<'_> {
         }
     }
 
-    fn unfold_at(&mut self, point: u32) -> bool {
+    fn unfold_at(&mut self, point: u32, most: f64) -> bool {
         let sharp: Vec<u32> = self.skin.around(point).filter(|half| self.skin.is_sharp(*half)).collect();
         let way = |half: u32| self.skin.point(self.skin.to(half)) - self.skin.point(point);
         if let &[] = sharp.as_slice() {
@@ -56,7 +57,8 @@ impl Refiner<'_> {
             return true;
         }
         if let &[only] = sharp.as_slice() {
-            return self.draw_anyway(only);
+            // An edge may end where its sides come to lie in one plane; what runs out of it is none.
+            return !self.probe.is_edge(&self.skin, only) && self.draw_within(only, most);
         }
         // Two edges that leave in nearly one direction are one; of two that pass through a point none turns back.
         let narrow = if sharp.len() == 2 { 0.3 } else { 0.9 };
@@ -67,9 +69,9 @@ impl Refiner<'_> {
                     let near = if a.length() <= b.length() { *one } else { *other };
                     // The nearer neighbor goes, unless this point is only on the way.
                     return if sharp.len() == 2 {
-                        self.draw_anyway(near)
+                        self.draw_within(near, most)
                     } else {
-                        self.draw_anyway(self.skin.twin(near))
+                        self.draw_within(self.skin.twin(near), most)
                     };
                 }
             }
@@ -81,6 +83,11 @@ impl Refiner<'_> {
         false
     }
 
+    fn draw_within(&mut self, half: u32, most: f64) -> bool {
+        let (from, to) = (self.skin.point(self.skin.from(half)), self.skin.point(self.skin.to(half)));
+        from.distance(to) <= most && self.draw_anyway(half)
+    }
+
     fn draw_anyway(&mut self, half: u32) -> bool {
         if !self.skin.can_collapse(half) {
             return false;
@@ -89,6 +96,15 @@ impl Refiner<'_> {
         self.skin.collapse(half);
         self.touch(left);
         true
+    }
+
+    /// Draws the ends of a very short edge together.
+    fn draw_either(&mut self, half: u32) -> bool {
+        let ends = [self.skin.from(half), self.skin.to(half)];
+        // Two corners in one place are one, in which more than three edges of the surface meet.
+        let twins = ends.iter().all(|end| self.skin.kind(*end) == Kind::Corner)
+            && self.skin.point(ends[0]).distance(self.skin.point(ends[1])) < ONE_PLACE * self.probe.size;
+        self.draw(half) || self.draw(self.skin.twin(half)) || (twins && self.draw_anyway(half))
     }
 
     /// Draws the start of a half-edge into its end, where the surface's edges allow it; whether it was done.
@@ -112,7 +128,10 @@ impl Refiner<'_> {
 
     /// Makes triangles that cross others sounder: the shortest side of each is drawn together; large ones are split.
     pub(super) fn untangle(&mut self, crossed: &[u32], round: u32) {
-        self.unfold();
+        if crossed.is_empty() {
+            return;
+        }
+        self.unfold(4.0 * self.tolerance);
         for triangle in crossed {
             if !self.skin.is_alive(*triangle) {
                 continue;
@@ -121,11 +140,8 @@ impl Refiner<'_> {
                 let half = 3 * triangle + k;
                 self.skin.point(self.skin.from(half)).distance(self.skin.point(self.skin.to(half)))
             };
-            let by = |better: fn(f64, f64) -> bool| {
-                [1, 2].into_iter().fold(0, |best, k| if better(length(k), length(best)) { k } else { best })
-            };
-            let (shortest, longest) = (by(|a, b| a < b), by(|a, b| a > b));
-            let (short, long) = (3 * triangle + shortest, 3 * triangle + longest);
+            let shortest = [1, 2].into_iter().fold(0, |best, k| if length(k) < length(best) { k } else { best });
+            let short = 3 * triangle + shortest;
             let small = length(shortest) < 2.0 * self.tolerance.max(1e-5 * self.probe.size);
             let mut ring = Vec::new();
             let twin = self.skin.twin(short);
@@ -137,10 +153,10 @@ impl Refiner<'_> {
             {
                 continue;
             }
-            if small && round < 5 && (self.draw(short) || self.draw(twin)) {
+            if small && round < 5 && self.draw_either(short) {
                 continue;
             }
-            if let Some(point) = self.split_edge(long) {
+            if let Some(point) = self.split_any(*triangle) {
                 self.touch(point);
             }
         }
