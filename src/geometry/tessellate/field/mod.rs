@@ -189,7 +189,6 @@ impl<'a> Maker<'a> {
         let target = self.tolerance / MARGIN;
         let mut refiner =
             Refiner { probe: self.probe, skin, tolerance: target, limit: most, changed: Changed::default() };
-        if std::env::var("KILN_DUMP").is_ok() { dump(&refiner.skin, &[], "/tmp/f/start.obj"); }
         if !refiner.run() || self.probe.is_spent() {
             if self.probe.is_spent() || most <= self.limit {
                 return Err(TessellateError::TooMuchWork);
@@ -204,8 +203,6 @@ impl<'a> Maker<'a> {
             }
             let far = self.too_far(&refiner, &mut checked);
             let crossed = if far.is_empty() { self.crossed(&refiner) } else { Vec::new() };
-            eprintln!("round {round}: far {} crossed {} triangles {}", far.len(), crossed.len(), refiner.skin.triangles.len());
-            if std::env::var("KILN_DUMP").is_ok() { dump(&refiner.skin, &crossed, &format!("/tmp/f/round{round}.obj")); }
             if far.is_empty() && crossed.is_empty() {
                 return Ok((refiner, checked.greatest * MARGIN));
             }
@@ -329,17 +326,4 @@ struct Checked {
 /// Whether a point lies on an edge of the surface.
 fn is_on_edge(skin: &Skin, index: u32) -> bool {
     skin.kind(index) != Kind::Smooth
-}
-
-fn dump(skin: &Skin, crossed: &[u32], path: &str) {
-    use std::fmt::Write;
-    let mut out = String::new();
-    for p in &skin.points { let _ = writeln!(out, "v {} {} {}", p.x, p.y, p.z); }
-    for (k, t) in skin.triangles.iter().enumerate() {
-        if t[0] == skin::NONE { continue; }
-        let c = crossed.contains(&(k as u32));
-        let _ = writeln!(out, "usemtl {}\nf {} {} {}", if c {"bad"} else {"ok"}, t[0]+1, t[1]+1, t[2]+1);
-    }
-    for h in skin.edges() { if skin.is_sharp(h) { let _ = writeln!(out, "l {} {}", skin.from(h)+1, skin.to(h)+1); } }
-    let _ = std::fs::write(path, out);
 }

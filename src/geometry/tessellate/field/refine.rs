@@ -213,8 +213,7 @@ impl Refiner<'_> {
                     Kind::Smooth => normal,
                     Kind::Edge | Kind::Corner => self.probe.normal_towards(place, middle, ASIDE),
                 };
-                let corner =
-                    |point: u32| (skin.point(point), self.probe.corner_normal(skin, point, middle));
+                let corner = |point: u32| (skin.point(point), self.probe.corner_normal(skin, point, middle));
                 upright([(place, own), corner(ends[0]), corner(ends[1])]) >= UPRIGHT.min(before)
             })
         })

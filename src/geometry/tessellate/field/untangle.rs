@@ -140,7 +140,8 @@ impl Refiner<'_> {
                 let half = 3 * triangle + k;
                 self.skin.point(self.skin.from(half)).distance(self.skin.point(self.skin.to(half)))
             };
-            let shortest = [1, 2].into_iter().fold(0, |best, k| if length(k) < length(best) { k } else { best });
+            let shortest =
+                [1, 2].into_iter().fold(0, |best, k| if length(k) < length(best) { k } else { best });
             let short = 3 * triangle + shortest;
             let small = length(shortest) < 2.0 * self.tolerance.max(1e-5 * self.probe.size);
             let mut ring = Vec::new();
