@@ -188,7 +188,7 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
         ),
         RealizeError::Tessellate(TessellateError::Unsound { .. }) => (
             Code::UnsoundSurface,
-            "let its parts overlap or lie apart, or join them with a `blend`; a finer `tolerance` tells more apart",
+            "let its parts overlap or lie apart, join them with a `blend`, or make each a shape of its own and join those as solids",
         ),
         RealizeError::Tessellate(TessellateError::TooMuchWork) => (
             Code::TooMuchWork,

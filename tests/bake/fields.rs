@@ -112,3 +112,47 @@ fn balls_that_touch_are_refused() {
     let found = refused.to_string();
     assert!(found.contains("K0944") && found.contains("near [1, "), "{found}");
 }
+
+/// Edges where three and four planes meet, a gyroid cut off by a box, a fillet that fades into edges: all are kept.
+#[test]
+fn sharp_edges_of_formulas_and_joins_are_kept() {
+    let octahedron = bake(
+        "[shape.s.implicit]\nfield = { formula = { f = \"= abs(x) + abs(y) + abs(z) - 1\" } }\n\
+         within = { min = [-1.5, -1.5, -1.5], max = [1.5, 1.5, 1.5] }",
+    );
+    let facts = &octahedron.only().facts;
+    assert_near(facts.volume.expect("closed"), 4.0 / 3.0, 1e-4);
+    assert!(facts.triangles < 50, "{facts:?}");
+    for text in
+        [include_str!("../../specs/fields/tile.toml"), include_str!("../../specs/fields/bracket.toml")]
+    {
+        let baked = bake(text);
+        let facts = &baked.only().facts;
+        assert!(facts.closed && facts.manifold && facts.components == 1, "{facts:?}");
+    }
+    let tile = bake(include_str!("../../specs/fields/tile.toml"));
+    let facts = &tile.only().facts;
+    // The gyroid parts its period in two halves.
+    assert_near(facts.volume.expect("closed"), 0.5, 0.02);
+    let size = facts.bounds.expect("not empty");
+    assert_eq!((size.min, size.max), ([-0.5; 3], [0.5; 3]));
+}
+
+/// A surface of a field is a shape: solids take it, and it is a cage.
+#[test]
+fn fields_are_parts_of_solids_and_cages() {
+    let text = "tolerance = 5e-3\n[shape.ball.implicit]\nfield = { sphere = { radius = 1 } }\n\
+         [shape.block.box]\nsize = [4, 4, 2]\ncenter = [0, 0, 1]\n\
+         [shape.half.intersection]\nof = [\"ball\", \"block\"]\n[node.a]\nshape = \"half\"";
+    let baked = bake(text);
+    let facts = &baked.only().facts;
+    assert!(facts.closed && facts.manifold, "{facts:?}");
+    assert_near(facts.volume.expect("closed"), 2.0 / 3.0 * PI, 2e-2);
+    let text = "[field.a.skeleton]\nelements = [{ segment = [[0, 0, 0], [1, 0, 0]], radius = 0.5 }]\n\
+         [shape.rough]\ntolerance = 0.05\n[shape.rough.implicit]\nfield = \"a\"\n\
+         [shape.s.subdivide]\ncage = \"rough\"\nscheme = \"loop\"\nlevels = 2\n[node.a]\nshape = \"s\"";
+    let baked = bake(text);
+    let facts = &baked.only().facts;
+    assert!(facts.closed && facts.manifold && facts.genus == Some(0), "{facts:?}");
+    assert_eq!(facts.triangles % 16, 0);
+}

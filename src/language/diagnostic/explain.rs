@@ -402,7 +402,7 @@ examples! {
     NoElement: "An element of a skeleton is one thing: a `point`, a `segment` of two points, a flat `polygon`, or a `curve`.",
         "[field.a.skeleton]\nelements = [{ radius = 1 }]\n[shape.a.implicit]\nfield = \"a\"" =>
         "[field.a.skeleton]\nelements = [{ point = [0, 0, 0], radius = 1 }]\n[shape.a.implicit]\nfield = \"a\"";
-    UnsoundSurface: "Triangles must not cross, and must be near enough to the surface. Where parts of it touch or cross each other there are none; and edges that are very blunt, or corners in which more than three edges meet, are not always found. Bodies that overlap or lie apart have a sound surface, as a union with a `blend` has.",
+    UnsoundSurface: "Triangles must not cross, and must be near enough to the surface. Where parts of it touch or cross each other there are none; and edges that are very blunt, or corners in which more than three edges meet, are not always found, nor are those of several bodies joined without a `blend` in every position. Bodies that overlap or lie apart have a sound surface, as a union with a `blend` has; shapes of one field each, joined as solids, keep all sharp edges.",
         "" =>
         "[shape.a.implicit]\nfield = { union = { of = [{ sphere = { radius = 1 } }, { sphere = { radius = 1, center = [2, 0, 0] } }], blend = 0.3 } }";
     TooMuchWork: "A field is searched in cells, and asked at many places. Where bounds on it say nothing until cells are very small, or it has very many parts, this would not end soon. The usual reasons are a field that touches 0 without a change of sign, a small `search`, a box much larger than the body, a fine `tolerance`.",

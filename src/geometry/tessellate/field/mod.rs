@@ -59,7 +59,7 @@ const MOST_SPARE: usize = 2;
 const MARGIN: f64 = 1.06;
 /// How often triangles that are too far off or cross are made smaller.
 const REPAIRS: u32 = 14;
-/// So many triangles that cross are always worth another try.
+/// So many triangles that cross or are too far off are always worth another try.
 const MOST_TANGLED: usize = 1 << 10;
 /// Places in a triangle, by the shares of its corners: those of a lattice that cuts its sides in six, without the corners.
 const SAMPLES: [[f64; 3]; 25] = {
@@ -196,7 +196,7 @@ impl<'a> Maker<'a> {
             return Err(TessellateError::TooMany { needed: self.limit as u64 + 1, limit: self.limit as u64 });
         }
         let mut checked = Checked::default();
-        let mut fewest = usize::MAX;
+        let (mut fewest, mut nearest) = (usize::MAX, usize::MAX);
         for round in 0..REPAIRS {
             if self.probe.is_spent() {
                 return Err(TessellateError::TooMuchWork);
@@ -206,7 +206,13 @@ impl<'a> Maker<'a> {
             if far.is_empty() && crossed.is_empty() {
                 return Ok((refiner, checked.greatest * MARGIN));
             }
-            // What tangles more and more comes apart no longer.
+            // What gets worse and worse comes right no longer.
+            if far.len() > nearest.max(MOST_TANGLED).saturating_mul(2) {
+                break;
+            }
+            if !far.is_empty() {
+                nearest = nearest.min(far.len());
+            }
             if crossed.len() > fewest.max(MOST_TANGLED).saturating_mul(2) {
                 break;
             }
