@@ -135,7 +135,7 @@ fn sharp_edges_of_formulas_and_joins_are_kept() {
     // The gyroid parts its period in two halves.
     assert_near(facts.volume.expect("closed"), 0.5, 0.02);
     let size = facts.bounds.expect("not empty");
-    assert_eq!((size.min, size.max), ([-0.5; 3], [0.5; 3]));
+    assert_eq!((size.min, size.max), ([-0.25, -0.5, -0.5], [0.75, 0.5, 0.5]));
 }
 
 /// A surface of a field is a shape: solids take it, and it is a cage.
