@@ -113,7 +113,7 @@ fn balls_that_touch_are_refused() {
     assert!(found.contains("K0944") && found.contains("near [1, "), "{found}");
 }
 
-/// Edges where three and four planes meet, a gyroid cut off by a box, a fillet that fades into edges: all are kept.
+/// Corners where four planes meet, a fillet that fades into edges: all are kept.
 #[test]
 fn sharp_edges_of_formulas_and_joins_are_kept() {
     let octahedron = bake(
@@ -123,19 +123,22 @@ fn sharp_edges_of_formulas_and_joins_are_kept() {
     let facts = &octahedron.only().facts;
     assert_near(facts.volume.expect("closed"), 4.0 / 3.0, 1e-4);
     assert!(facts.triangles < 50, "{facts:?}");
-    for text in
-        [include_str!("../../specs/fields/tile.toml"), include_str!("../../specs/fields/bracket.toml")]
-    {
-        let baked = bake(text);
-        let facts = &baked.only().facts;
-        assert!(facts.closed && facts.manifold && facts.components == 1, "{facts:?}");
-    }
-    let tile = bake(include_str!("../../specs/fields/tile.toml"));
-    let facts = &tile.only().facts;
-    // The gyroid parts its period in two halves.
-    assert_near(facts.volume.expect("closed"), 0.5, 0.02);
+    let baked = bake(include_str!("../../specs/fields/bracket.toml"));
+    let facts = &baked.only().facts;
+    assert!(facts.closed && facts.manifold && facts.genus == Some(3), "{facts:?}");
     let size = facts.bounds.expect("not empty");
-    assert_eq!((size.min, size.max), ([-0.25, -0.5, -0.5], [0.75, 0.5, 0.5]));
+    assert_eq!((size.max[0], size.max[1]), (0.05, 0.08));
+}
+
+/// A gyroid ends at a box: the two spaces that it parts have equal shares of its period.
+#[test]
+fn a_gyroid_is_closed_at_a_box() {
+    let baked = bake(include_str!("../../specs/fields/tile.toml"));
+    let facts = &baked.only().facts;
+    assert!(facts.closed && facts.manifold && facts.components == 1, "{facts:?}");
+    assert_near(facts.volume.expect("closed"), 0.5, 0.05);
+    let size = facts.bounds.expect("not empty");
+    assert!(size.max.iter().chain(&size.min).all(|x| (x.abs() - 0.5).abs() < 1e-6), "{size:?}");
 }
 
 /// A surface of a field is a shape: solids take it, and it is a cage.
