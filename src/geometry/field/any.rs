@@ -115,9 +115,12 @@ fn box_of(place: [Interval; 3]) -> Bounds {
 }
 
 /// First derivatives alone: fields ask for no more.
-fn chained<T: Algebra>(value: T, gradient: [T; 3], place: &[Jet<T, 3>; 3]) -> Jet<T, 3>
+type Slope<T> = Jet<T, 3, false>;
+
+/// What a leaf gives, by the variables of its place.
+fn chained<T: Algebra>(value: T, gradient: [T; 3], place: &[Slope<T>; 3]) -> Slope<T>
 where
-    Jet<T, 3>: Algebra,
+    Slope<T>: Algebra,
 {
     let mut jet = Jet { value, first: [T::constant(0.0); 3], second: [[T::constant(0.0); 3]; 3] };
     for axis in 0..3 {
@@ -127,14 +130,14 @@ where
     jet
 }
 
-impl Space for Jet<f64, 3> {
+impl Space for Slope<f64> {
     fn leaf(of: &impl Leaf, place: [Self; 3]) -> Self {
         let (value, gradient) = of.leaf_gradient(DVec3::from_array(place.map(|part| part.value)));
         chained(value, gradient.to_array(), &place)
     }
 }
 
-impl Space for Jet<Interval, 3> {
+impl Space for Slope<Interval> {
     fn leaf(of: &impl Leaf, place: [Self; 3]) -> Self {
         let study = of.leaf_study(&box_of(place.map(|part| part.value)));
         chained(study.value, study.gradient, &place)
@@ -185,7 +188,7 @@ impl AnyField {
             }
             Self::Primitive(_) | Self::Formula(_) => {
                 let place = point.to_array();
-                let jet = self.evaluate([0, 1, 2].map(|axis| Jet::<f64, 3>::variable(place[axis], axis)));
+                let jet = self.evaluate([0, 1, 2].map(|axis| Slope::<f64>::variable(place[axis], axis)));
                 (jet.value, DVec3::from_array(jet.first))
             }
         }
@@ -207,7 +210,7 @@ impl AnyField {
             Self::Placed(placed) => placed.study(within),
             _ => {
                 let sides = sides(within);
-                let jet = self.evaluate([0, 1, 2].map(|axis| Jet::variable(sides[axis], axis)));
+                let jet = self.evaluate([0, 1, 2].map(|axis| Slope::variable(sides[axis], axis)));
                 Study { value: jet.value, gradient: jet.first }
             }
         }
