@@ -123,7 +123,7 @@ fn sharp_edges_of_formulas_and_joins_are_kept() {
     let facts = &octahedron.only().facts;
     assert_near(facts.volume.expect("closed"), 4.0 / 3.0, 1e-4);
     assert!(facts.triangles < 50, "{facts:?}");
-    let baked = bake(include_str!("../../specs/fields/bracket.toml"));
+    let baked = bake(include_str!("../data/fields/bracket.toml"));
     let facts = &baked.only().facts;
     assert!(facts.closed && facts.manifold && facts.genus == Some(3), "{facts:?}");
     let size = facts.bounds.expect("not empty");
@@ -133,7 +133,7 @@ fn sharp_edges_of_formulas_and_joins_are_kept() {
 /// A gyroid ends at a box: the two spaces that it parts have equal shares of its period.
 #[test]
 fn a_gyroid_is_closed_at_a_box() {
-    let baked = bake(include_str!("../../specs/fields/tile.toml"));
+    let baked = bake(include_str!("../data/fields/tile.toml"));
     let facts = &baked.only().facts;
     assert!(facts.closed && facts.manifold && facts.components == 1, "{facts:?}");
     assert_near(facts.volume.expect("closed"), 0.5, 0.05);
