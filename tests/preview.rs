@@ -24,7 +24,7 @@ fn view(name: &str) -> View {
 
 fn picture(text: &str, from: &str, look: &Look) -> Picture {
     let (asset, stage) = stage(text);
-    draw_picture(&asset, &stage, &Camera::on(&[&stage], view(from), look), look, None)
+    draw_picture(&asset, &stage, &Camera::on(&[&stage], view(from), look), look)
 }
 
 const CLEAR: [u8; 4] = [0; 4];

@@ -150,7 +150,7 @@ fn look(render: &Render) -> Look {
 /// All views on one sheet.
 fn still(render: &Render, asset: &Asset, stage: &Stage) -> Picture {
     let look = look(render);
-    let of = |view: &View| draw_picture(asset, stage, &Camera::on(&[stage], *view, &look), &look, None);
+    let of = |view: &View| draw_picture(asset, stage, &Camera::on(&[stage], *view, &look), &look);
     let mut pictures: Vec<Picture> = render.view.iter().map(of).collect();
     match pictures.len() {
         1 => pictures.remove(0),
@@ -176,7 +176,7 @@ fn turntable(render: &Render, asset: &Asset, stage: &Stage, count: u16) -> Resul
     let pictures: Vec<Picture> = (0..count)
         .map(|k| {
             let camera = Camera::turning(&stage.bounds, view(k), look.projection, look.size);
-            draw_picture(asset, stage, &camera, &look, None)
+            draw_picture(asset, stage, &camera, &look)
         })
         .collect();
     // Once around takes four seconds, however many pictures there are.
@@ -203,7 +203,7 @@ fn clip(render: &Render, asset: &Asset) -> Result<Vec<u8>, Fault> {
     let all: Vec<&Stage> = stages.iter().collect();
     let camera = Camera::on(&all, first_view(render), &look);
     let pictures: Vec<Picture> =
-        stages.iter().map(|stage| draw_picture(asset, stage, &camera, &look, None)).collect();
+        stages.iter().map(|stage| draw_picture(asset, stage, &camera, &look)).collect();
     Picture::animation(&pictures, 42).map_err(unwritten)
 }
 

@@ -11,7 +11,7 @@ use super::stage::{Stage, Vertex};
 use super::{Look, Shading};
 use crate::geometry::number::{ln, single};
 
-/// Names of faces from here on are lines.
+/// Colors of the faces of one picture; names past those of the triangles are lines.
 pub(super) struct Shader<'a> {
     asset: &'a Asset,
     stage: &'a Stage,
@@ -23,8 +23,6 @@ pub(super) struct Shader<'a> {
     materials: Vec<u32>,
     /// Light reflected at each vertex, for Gouraud's way.
     vertices: Vec<Vec3>,
-    /// A color for each vertex that stands for that of its material.
-    paint: Option<&'a [Vec3]>,
     /// Whether any material lets anything through.
     opaque: bool,
 }
@@ -47,12 +45,7 @@ struct Hit {
 }
 
 impl<'a> Shader<'a> {
-    pub(super) fn new(
-        (asset, stage): (&'a Asset, &'a Stage),
-        camera: &'a Camera,
-        look: &Look,
-        paint: Option<&'a [Vec3]>,
-    ) -> Self {
+    pub(super) fn new((asset, stage): (&'a Asset, &'a Stage), camera: &'a Camera, look: &Look) -> Self {
         let mut materials = Vec::with_capacity(stage.triangles.len());
         for piece in &stage.pieces {
             materials.resize(piece.end, crate::geometry::number::count_of(piece.material));
@@ -68,7 +61,6 @@ impl<'a> Shader<'a> {
             shadow: None,
             materials,
             vertices: Vec::new(),
-            paint,
             opaque,
         };
         if look.shadows && look.shading != Shading::Normals {
@@ -155,14 +147,7 @@ impl<'a> Shader<'a> {
         }
         let level = self.level(&hit, material);
         let base = self.base(material, &hit.corners, hit.shares, level).truncate();
-        let own = match self.paint {
-            Some(paint) => {
-                let corners = self.stage.triangles[name as usize];
-                (0..3).map(|k| paint[corners[k] as usize] * single(hit.shares[k])).sum()
-            }
-            None => base,
-        };
-        let own = if hit.front || material.double_sided { own } else { own * BACK };
+        let own = if hit.front || material.double_sided { base } else { base * BACK };
         if self.shading == Shading::Gouraud {
             let corners = self.stage.triangles[name as usize];
             let light: Vec3 =
@@ -170,7 +155,7 @@ impl<'a> Shader<'a> {
             let light = if hit.front { light } else { Vec3::splat(0.3) };
             return color::toned(own * light);
         }
-        if material.unlit && self.paint.is_none() {
+        if material.unlit {
             return own;
         }
         if let Some((map, scale)) = material.normal_map.filter(|_| self.shading != Shading::Flat) {
@@ -180,7 +165,6 @@ impl<'a> Shader<'a> {
         let shadow = self.shadow.as_ref().map_or(1.0, |shadow| shadow.at(hit.point, hit.across * side));
         let light = match self.shading {
             Shading::Phong | Shading::Flat => surface.phong(&self.lights, shadow),
-            _ if self.paint.is_some() => surface.phong(&self.lights, 1.0),
             _ => surface.reflected(&self.lights, shadow) + self.emitted(material, &hit, level),
         };
         color::toned(light)
@@ -194,8 +178,8 @@ impl<'a> Shader<'a> {
         let eye = self.camera.towards(hit.point);
         Surface {
             color,
-            metallic: if self.paint.is_some() { 0.0 } else { material.metallic * maps.z },
-            roughness: if self.paint.is_some() { 1.0 } else { (material.roughness * maps.y).clamp(0.0, 1.0) },
+            metallic: material.metallic * maps.z,
+            roughness: (material.roughness * maps.y).clamp(0.0, 1.0),
             open,
             // Normals between those of corners may look away where the surface itself does not.
             normal: (normal + eye * (0.02 - normal.dot(eye)).max(0.0)).normalize_or(eye),
