@@ -197,6 +197,13 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
         RealizeError::Tessellate(TessellateError::BelowBase { .. }) => {
             (Code::BelowBase, "write a lower `base`, or raise the heights with `range`")
         }
+        RealizeError::Tessellate(TessellateError::BelowLevel { .. }) => {
+            (Code::BelowBase, "write a lower `base`, or raise the heights with `range`")
+        }
+        RealizeError::Tessellate(TessellateError::CrossesItself { .. }) => (
+            Code::DeepHeights,
+            "lower the heights with `range`: inward they must stay above the centers of curvature, and what lies opposite must not be reached",
+        ),
         RealizeError::Tessellate(TessellateError::NothingKept) => {
             (Code::NothingKept, "write other thresholds: all masks must hold at once, over some area")
         }

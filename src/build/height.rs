@@ -2,16 +2,25 @@
 
 use std::sync::Arc;
 
+use glam::DVec2;
+
 use super::Builder;
 use super::profile::show;
 use crate::geometry::map::GridField;
-use crate::geometry::tessellate::{Closing, HeightBound as Bound, HeightMap as Heights, Mask, MaskSide};
+use crate::geometry::tessellate::{
+    BasedMap, Closing, HeightBound as Bound, HeightMap as Heights, Mask, MaskSide,
+};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::spec::{self, HeightBound, HeightClose, HeightMap, Level, ShapeOptions, Sp};
 use crate::model::Recipe;
 
 impl Builder<'_> {
-    pub(super) fn height_map(&mut self, written: &HeightMap, options: &ShapeOptions) -> Option<Recipe> {
+    pub(super) fn height_map(
+        &mut self,
+        name: &str,
+        written: &HeightMap,
+        options: &ShapeOptions,
+    ) -> Option<Recipe> {
         let field = self.map_of(&written.map)?;
         if let Some(segments) = options.segments {
             let report = Diagnostic::error(Code::Conflict, "a height map is not cut into `segments`")
@@ -31,9 +40,19 @@ impl Builder<'_> {
             HeightClose::None => Closing::None,
             HeightClose::Base => Closing::Base(written.base.map_or(0.0, |base| base.value)),
             HeightClose::Thickness => Closing::Thickness(written.depth?.value),
+            HeightClose::Ends => Closing::Ends,
         };
         let masks = self.masks(&written.mask)?;
-        Some(Recipe::Height(Heights { field, size: written.size.value, bound, close, masks }))
+        let size = written.size.map_or(DVec2::ONE, |size| size.value);
+        let heights = Heights { field, size, bound, close, masks };
+        match &written.on {
+            None => Some(Recipe::Height(heights)),
+            Some(base) => {
+                let base = self.height_base(name, base)?;
+                self.note_poles(&base, &heights, written.map.span());
+                Some(Recipe::Based(Box::new(BasedMap::new(base, heights))))
+            }
+        }
     }
 
     pub(super) fn masks(&mut self, written: &[spec::Mask]) -> Option<Vec<Mask>> {

@@ -19,6 +19,7 @@ mod field;
 mod formula;
 mod formula_curve;
 mod height;
+mod height_base;
 mod implicit;
 mod import;
 mod joined;

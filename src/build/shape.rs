@@ -118,7 +118,7 @@ impl Builder<'_> {
             Kind::Joined(joined) => self.joined_surfaces(name, joined),
             Kind::Quadric(quadric) => self.quadric(quadric, span).map(here),
             Kind::Gordon(network) => self.gordon(network, span).map(here),
-            Kind::HeightMap(map) => self.height_map(map, &definition.options).map(here),
+            Kind::HeightMap(map) => self.height_map(name, map, &definition.options).map(here),
             Kind::Split(split) => self.split(name, split, &definition.options, span),
             Kind::Parametric(surface) => {
                 let both = self.shows_both_sides(&definition.options);

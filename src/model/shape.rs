@@ -6,7 +6,7 @@ use super::{Bending, MaterialHandle, SolidRecipe, SubdivisionRecipe};
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::tessellate::{
-    ClippedQuadric, Extrusion, FieldSurface, FlatPlane, Geodesic, HeightMap, Patchwork, Revolution,
+    BasedMap, ClippedQuadric, Extrusion, FieldSurface, FlatPlane, Geodesic, HeightMap, Patchwork, Revolution,
     RoundedBox, Sheet, Sweep, TrimmedSurface, TwoSided,
 };
 
@@ -53,6 +53,8 @@ pub enum Recipe {
     Sheet(Sheet),
     /// Heights over a rectangle.
     Height(HeightMap),
+    /// Heights over a curved base.
+    Based(Box<BasedMap>),
     /// Heights on both sides of a plane.
     TwoSided(Box<TwoSided>),
     /// Curves as lines.

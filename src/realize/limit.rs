@@ -89,7 +89,7 @@ pub(super) fn least_triangles(model: &Model) -> Vec<u64> {
             Recipe::Solid(_) | Recipe::Subdivided(_) => 1,
             Recipe::Cuboid { .. } => 12,
             Recipe::RoundedBox(_) => 44,
-            Recipe::Height(_) | Recipe::TwoSided(_) => 2,
+            Recipe::Height(_) | Recipe::Based(_) | Recipe::TwoSided(_) => 2,
             _ => 1,
         });
     }

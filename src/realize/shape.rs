@@ -13,8 +13,8 @@ use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex, Wire};
 use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::{
     DeformError, Deformed, Detail, Deviation, HeightBound, SurfaceDensity, TessellateError, Tessellation,
-    cuboid, deform, extrude, field_surface, geodesic, height_map, patchwork, plane, quadric, revolve,
-    rounded_box, sheet, sweep, trimmed, two_sided, wire,
+    based_map, cuboid, deform, extrude, field_surface, geodesic, height_map, patchwork, plane, quadric,
+    revolve, rounded_box, sheet, sweep, trimmed, two_sided, wire,
 };
 use crate::model::{Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing, UvMode};
 
@@ -192,6 +192,7 @@ impl<'a> Maker<'a> {
                 return self.finished(shape, made);
             }
             Recipe::Height(map) => height_map(map, &detail, tolerance / stretch),
+            Recipe::Based(map) => based_map(map, &detail, tolerance / stretch),
             Recipe::TwoSided(body) => two_sided(body, &detail, tolerance / stretch),
             Recipe::Polygons { mesh, materials } => {
                 return self.finished(shape, self.polygons(handle, mesh, materials)?);
@@ -396,7 +397,11 @@ fn split_by_element(made: &mut Made, field: &AnyField, materials: &[Option<Mater
 /// Whether the document fixes how finely a shape is cut.
 fn has_fixed_grid(shape: &Shape) -> bool {
     let divided = matches!(&shape.recipe, Recipe::Geodesic(ball) if ball.frequency.is_some());
-    let sampled = matches!(&shape.recipe, Recipe::Height(map) if map.bound != HeightBound::Surface);
+    let sampled = match &shape.recipe {
+        Recipe::Height(map) => map.bound != HeightBound::Surface,
+        Recipe::Based(map) => map.heights().bound != HeightBound::Surface,
+        _ => false,
+    };
     shape.options.density.is_some() || divided || sampled
 }
 

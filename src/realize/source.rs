@@ -16,7 +16,8 @@ use crate::geometry::number::{Bounds, hypot};
 use crate::geometry::subdivide::Scheme;
 use crate::geometry::surface::{AnySurface, Deformation, Surface as _, SweptWall};
 use crate::geometry::tessellate::{
-    ClippedQuadric, Closing, DeformError, Density, FieldSurface, HeightMap, RoundedBox, Route, discretize,
+    BasedMap, ClippedQuadric, Closing, DeformError, Density, FieldSurface, HeightMap, Layer, RoundedBox,
+    Route, discretize,
 };
 use crate::model::{KeptSide, Model, Recipe, ShapeHandle, SolidOperation, SolidRecipe};
 
@@ -24,7 +25,7 @@ use crate::model::{KeptSide, Model, Recipe, ShapeHandle, SolidOperation, SolidRe
 pub(super) fn source_count(recipe: &Recipe) -> u32 {
     match recipe {
         Recipe::Cuboid { .. } => 6,
-        Recipe::Height(_) | Recipe::TwoSided(_) => 3,
+        Recipe::Height(_) | Recipe::Based(_) | Recipe::TwoSided(_) => 3,
         Recipe::Revolution(_) => 3,
         Recipe::Sweep(sweep) => mesh::index(sweep.outlines.len()) + 2,
         Recipe::Extrusion(extrusion) => mesh::index(extrusion.outlines.len()) + 2,
@@ -66,6 +67,8 @@ enum Kind {
     Patch(Box<Field>),
     /// Heights over a rectangle, moved along y.
     Height(Arc<HeightMap>, f64),
+    /// A skin over a curved base.
+    Based(Arc<BasedMap>, Layer),
     /// A curve by itself.
     Line(AnyCurve),
     /// Where a polynomial is zero.
@@ -227,6 +230,13 @@ fn kinds(recipe: &Recipe, bends: bool) -> Vec<Kind> {
             let depth = if let Closing::Thickness(depth) = map.close { depth } else { 0.0 };
             let sides = Kind::Flat(Flat::Exact);
             vec![Kind::Height(shared.clone(), 0.0), sides, Kind::Height(shared, -depth)]
+        }
+        Recipe::Based(map) => {
+            let shared = Arc::new(map.as_ref().clone());
+            let layers = map.layers();
+            let skin = |layer: Layer| Kind::Based(shared.clone(), layer);
+            let under = layers.get(1).map_or(Kind::Flat(Flat::Exact), |layer| skin(*layer));
+            vec![skin(layers[0]), Kind::Flat(Flat::Exact), under]
         }
         Recipe::TwoSided(body) => {
             let mut back = body.back.clone();
@@ -394,6 +404,7 @@ impl Source {
             Kind::Swept(wall) => super::swept::distance(wall, local, window),
             Kind::Patch(surface) => surface.distance(local, window),
             Kind::Height(map, lift) => super::height::distance(map, local - DVec3::Y * *lift),
+            Kind::Based(map, layer) => super::height::distance_to_skin(map, *layer, local, window),
             Kind::Line(curve) => distance_near(curve, local, window.u),
             Kind::Implicit(surface) => surface.distance(local),
             Kind::Quadric(quadric) => {
@@ -538,6 +549,7 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
             }
         }
         Recipe::Height(map) => super::height::extent(map),
+        Recipe::Based(map) => Bounds::of_points(super::height::points_of_based(map)),
         Recipe::TwoSided(body) => super::height::extent_of_two(body),
         Recipe::Patches(patches) => patches.surfaces.iter().map(lattice).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Wire(curves) => curves.iter().map(along).fold(Bounds::EMPTY, Bounds::union),

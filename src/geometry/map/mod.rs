@@ -6,10 +6,12 @@
 //!
 //! Notation: a place is (x, y) in steps of the grid: x counts columns from 0, y counts rows from 0.
 
+mod closed;
 mod gaps;
 mod scattered;
 mod slopes;
 
+pub use closed::Closes;
 pub use scattered::{Method, ScatterError, Scattered};
 
 use thiserror::Error;

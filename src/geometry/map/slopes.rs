@@ -25,6 +25,29 @@ impl Slopes {
         Self { x, y, xy }
     }
 
+    /// Those of a part of the samples: for each axis the first and how many.
+    pub(super) fn part(
+        &self,
+        columns: usize,
+        (left, wide): (usize, usize),
+        (top, high): (usize, usize),
+    ) -> Self {
+        let part = |slopes: &[f64]| {
+            let rows = slopes.chunks_exact(columns).skip(top).take(high);
+            rows.flat_map(|row| row[left..left + wide].iter().copied()).collect()
+        };
+        Self { x: part(&self.x), y: part(&self.y), xy: part(&self.xy) }
+    }
+
+    /// Copies the slopes at the first of so many pairs of samples to the second.
+    pub(super) fn repeat(&mut self, pair: impl Fn(usize) -> (usize, usize), count: usize) {
+        for slopes in [&mut self.x, &mut self.y, &mut self.xy] {
+            for (from, to) in (0..count).map(&pair) {
+                slopes[to] = slopes[from];
+            }
+        }
+    }
+
     pub(super) fn scaled(&self, factor: f64) -> Self {
         let scale = |values: &[f64]| values.iter().map(|value| value * factor).collect();
         Self { x: scale(&self.x), y: scale(&self.y), xy: scale(&self.xy) }

@@ -37,7 +37,10 @@ pub use discretize::{Density, Station, arc_lengths, discretize};
 pub use extrude::{Extrusion, extrude};
 pub use field::{FieldSurface, field_surface};
 pub use geodesic::{Geodesic, geodesic};
-pub use height::{Closing, HeightBound, HeightMap, Mask, MaskSide, TwoSided, height_map, two_sided};
+pub use height::{
+    Base, BaseFault, BaseSurface, BasedMap, Chart, Closing, HeightBound, HeightMap, Layer, Mask, MaskSide,
+    SurfaceBase, TwoSided, based_map, height_map, two_sided,
+};
 pub use patch::{Patchwork, Rim, patchwork};
 pub use plane::{FlatPlane, plane};
 pub use quadric::{ClippedQuadric, quadric};
@@ -160,6 +163,22 @@ pub enum TessellateError {
         base: f64,
         /// x and z of that height.
         place: DVec2,
+    },
+    /// A height map over a curved base that reaches below what closes it.
+    #[error("at column {}, row {} it is {height} high, below its base at {base}", place.x, place.y)]
+    BelowLevel {
+        /// A height below the base.
+        height: f64,
+        /// The base.
+        base: f64,
+        /// Column and row of that height, counted from 0.
+        place: DVec2,
+    },
+    /// A surface moved along its normals so far that it crosses itself.
+    #[error("its surface runs through itself near {}", told(*place))]
+    CrossesItself {
+        /// Where.
+        place: DVec3,
     },
     /// Chords of lines that bound a curved face cross, however finely they are cut.
     #[error("the lines that bound it come too close to each other")]

@@ -381,6 +381,13 @@ codes! {
     LooseMotion = "K0971";
     /// a joint does not reach its target
     Unreached = "K0972";
+
+    /// heights along normals run through each other
+    DeepHeights = "K0980";
+    /// a base that cannot carry heights
+    BadBase = "K0981";
+    /// samples of a row that is one point differ
+    UnequalPole = "K0982";
 }
 
 impl std::fmt::Display for Code {

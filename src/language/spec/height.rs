@@ -7,6 +7,7 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::check::Check;
 use crate::language::spec::construct::{choices, table};
+use crate::language::spec::height_base::{HeightBase, Projection};
 use crate::language::spec::reader::{Read, Reader};
 use crate::language::spec::reference::MapReference;
 use crate::language::spec::scalar::finite;
@@ -16,14 +17,17 @@ use crate::language::value::{Data, Value, show_number};
 
 table! {
     /// Ground by a map of heights, over a flat rectangle in the x, z plane about the origin: columns of the map go to +x,
-    /// its first row lies at -z. The surface is defined between the samples too, as the `interpolation` of the map says,
+    /// its first row lies at -z. With `on` the heights stand on a curved base instead, along its normals. The surface is defined between the samples too, as the `interpolation` of the map says,
     /// and the mesh lies within the tolerance of it, with few triangles where the ground is flat. Neighbouring maps of the
     /// same `tolerance` and scale that repeat each other's border samples meet without a crack.
     "height map" pub HeightMap {
         /// The heights: the name of a map, or a map in place.
         map: MapReference;
-        /// Lengths along x and z, in the document's unit.
-        size: Sp<DVec2> => Check::above(0.0);
+        /// What the heights stand on, when it is not the plane: `{ sphere = { radius = 1 } }`, `{ cylinder = { ... } }`,
+        /// `{ ellipsoid = { ... } }` or `{ surface = { of = "vase" } }`. Surfaces that would run through themselves are errors.
+        on: Option<HeightBase>;
+        /// Lengths along x and z, in the document's unit; of a map on the plane.
+        size: Option<Sp<DVec2>> => Check::above(0.0);
         /// The heights of the values 0 and 1 of the map, in the document's unit. With `[0, 1]` the values of the map are
         /// the heights; `[0, 0.2]` makes white pixels stand 0.2 above black ones; `[1, 0]` turns it upside down.
         range: Sp<DVec2> = DVec2::new(0.0, 1.0);
@@ -31,9 +35,10 @@ table! {
         bound: Sp<HeightBound> = HeightBound::Surface;
         /// How it is closed.
         close: Sp<HeightClose> = HeightClose::None;
-        /// With `close = "base"`: how high the flat bottom lies. No height may lie below it.
+        /// With `close = "base"`: how high the flat bottom lies, or with `on` how far out of the base the lower skin. No
+        /// height may lie below it.
         base: Option<Sp<f64>>;
-        /// With `close = "thickness"`: how far the lower sheet lies below the upper one, measured upright.
+        /// With `close = "thickness"`: how far the lower sheet lies below the upper one, measured along the heights.
         depth: Option<Sp<f64>> => Check::above(0.0);
         /// What is kept of the ground: the places where all of these hold. It ends along the exact lines where the maps
         /// pass their thresholds, in as many parts and with as many holes as that gives, and walls follow them when it is
@@ -89,6 +94,8 @@ choices! {
         Base = "base";
         /// By walls and a second sheet below.
         Thickness = "thickness";
+        /// By flat ends across the axis: on a cylinder that it goes all around.
+        Ends = "ends";
     }
 }
 
@@ -136,6 +143,42 @@ impl Read for Level {
 }
 
 impl HeightMap {
+    /// A size that is missing or means nothing.
+    fn misplaced(&self, span: Span) -> Option<Diagnostic> {
+        match (&self.on, self.size) {
+            (None, None) => Some(
+                Diagnostic::error(Code::MissingField, "missing field `size` of height map")
+                    .at(span, "how large?")
+                    .help("write `size = [1, 1]`, or `on = { sphere = { radius = 1 } }` for a curved base"),
+            ),
+            (Some(_), Some(size)) => Some(
+                Diagnostic::error(Code::Conflict, "`size` is that of a map on the plane")
+                    .at(size.span, "no effect with `on`")
+                    .help("leave it out: the base says how large the map is"),
+            ),
+            _ => None,
+        }
+    }
+
+    /// Ends of what has none, or none that are flat.
+    fn endless(&self) -> Option<Diagnostic> {
+        if self.close.value != HeightClose::Ends {
+            return None;
+        }
+        let whole = |base: &crate::language::spec::CylinderBase| {
+            let [from, to] = base.longitude.value.to_array();
+            base.projection.value == Projection::Cylindrical && to - from == 360.0
+        };
+        let fault = match &self.on {
+            Some(HeightBase::Cylinder(base)) if whole(base) && self.mask.is_empty() => return None,
+            Some(HeightBase::Cylinder(_)) => "a map that goes all around and has no masks",
+            _ => "a map on a cylinder",
+        };
+        let message = format!("`close = \"ends\"` closes {fault}");
+        let report = Diagnostic::error(Code::Conflict, message).at(self.close.span, "no flat ends here");
+        Some(report.help("write `close = \"base\"`, `\"thickness\"` or `\"none\"`"))
+    }
+
     fn check(&self, span: Span, reader: &mut Reader<'_>) -> bool {
         let close = self.close.value;
         let idle = |field: Option<Span>, name: &str, needs: HeightClose| {
@@ -152,7 +195,8 @@ impl HeightMap {
                 .at(place, "how thick?")
                 .help("write `depth = 0.1`")
         });
-        let reports: Vec<Diagnostic> = [base, depth, missing].into_iter().flatten().collect();
+        let reports = [base, depth, missing, self.misplaced(span), self.endless()];
+        let reports: Vec<Diagnostic> = reports.into_iter().flatten().collect();
         let good = reports.is_empty();
         reports.into_iter().for_each(|report| reader.report(report));
         good

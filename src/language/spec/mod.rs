@@ -18,6 +18,7 @@ mod field;
 mod formula;
 mod grid;
 mod height;
+mod height_base;
 mod implicit;
 mod import;
 mod joined;
@@ -91,6 +92,7 @@ pub use field::{
 pub use formula::{Formula, FormulaCurve, FormulaForm};
 pub use grid::{Degrees, Directions, Rows};
 pub use height::{HeightBound, HeightClose, HeightMap, Level, Mask, Split, SplitPart};
+pub use height_base::{CylinderBase, EllipsoidBase, HeightBase, Projection, ShapeBase, SphereBase};
 pub use implicit::Implicit;
 pub use import::{FilePath, Import, Up};
 pub use joined::Joined;

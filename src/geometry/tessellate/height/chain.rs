@@ -3,6 +3,7 @@
 //! Source of the splitting: U. Ramer, "An iterative procedure for the polygonal approximation of plane curves", 1972.
 
 use super::delaunay::Place;
+use super::ground::Value;
 use super::lattice::refinement;
 use crate::geometry::map::{GridField, Interpolation};
 
@@ -122,29 +123,39 @@ impl Side {
                 field.value(x, y)
             })
             .collect();
-        let mut bound = 0.0_f64;
-        let mut kept = vec![0];
-        let mut open = vec![(0, count)];
-        while let Some((from, to)) = open.pop() {
-            let (error, at) = farthest(&heights, from, to);
-            if error > tolerance {
-                open.extend([(at, to), (from, at)]);
-            } else {
-                bound = bound.max(error);
-                kept.push(to);
-            }
-        }
+        let (kept, bound) = split(&heights, vec![(0, count)], tolerance);
         Chain { steps: kept.into_iter().map(|k| k as f64 / parts).collect(), bound: bound + slack, refine }
     }
 }
 
+/// Nodes, the first among them, such that chords between them are within a tolerance of all others, and how near they
+/// are. The ranges given, the last first, are cut further.
+pub(super) fn split<V: Value>(
+    values: &[V],
+    mut open: Vec<(usize, usize)>,
+    tolerance: f64,
+) -> (Vec<usize>, f64) {
+    let mut bound = 0.0_f64;
+    let mut kept = vec![0];
+    while let Some((from, to)) = open.pop() {
+        let (error, at) = farthest(values, from, to);
+        if error > tolerance {
+            open.extend([(at, to), (from, at)]);
+        } else {
+            bound = bound.max(error);
+            kept.push(to);
+        }
+    }
+    (kept, bound)
+}
+
 /// The node farthest from the chord between two others.
-fn farthest(heights: &[f64], from: usize, to: usize) -> (f64, usize) {
+fn farthest<V: Value>(heights: &[V], from: usize, to: usize) -> (f64, usize) {
     let (a, b) = (heights[from], heights[to]);
     let length = (to - from) as f64;
     let mut worst = (0.0, from);
     for (k, height) in heights.iter().enumerate().take(to).skip(from + 1) {
-        let error = (height - (a + (b - a) * ((k - from) as f64 / length))).abs();
+        let error = (*height - (a + (b - a) * ((k - from) as f64 / length))).size();
         if error > worst.0 {
             worst = (error, k);
         }

@@ -24,7 +24,7 @@ pub(super) fn close(
     detail: &Detail,
 ) -> Result<Mesh, TessellateError> {
     match shape.close {
-        Closing::None => {}
+        Closing::None | Closing::Ends => {}
         Closing::Thickness(thickness) => {
             detail.allow(2 * sheet.triangles.len() as u64)?;
             let below = add_under(&mut sheet, thickness);

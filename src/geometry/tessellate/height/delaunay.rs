@@ -13,6 +13,9 @@
 /// No triangle beyond.
 pub(super) const BORDER: u32 = u32::MAX;
 
+/// The bit of lines that stay edges and bound nothing.
+pub(super) const FIXED: u32 = 1 << 31;
+
 /// A place in units of the finest grid.
 pub(super) type Place = [i32; 2];
 

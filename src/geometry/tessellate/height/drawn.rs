@@ -9,7 +9,7 @@
 
 use std::collections::VecDeque;
 
-use super::delaunay::{BORDER, Delaunay, Place, next, previous, turn};
+use super::delaunay::{BORDER, Delaunay, FIXED, Place, next, previous, turn};
 
 /// Lines that could not be told apart: rounding moved crossings onto ever new lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +30,9 @@ enum Way {
 impl Delaunay {
     /// Makes ready for lines.
     pub(super) fn allow_lines(&mut self) {
+        if !self.lines.is_empty() {
+            return;
+        }
         self.lines = vec![0; self.corners.len()];
         self.out_of = vec![BORDER; self.places.len()];
         for (side, corner) in (0..).zip(&self.corners) {
@@ -226,13 +229,13 @@ impl Delaunay {
         let count = self.triangles();
         let mut sides: Vec<Option<u32>> = vec![None; count as usize];
         let start = (0..3 * count).find(|side| self.beyond(*side) == BORDER).ok_or(Tangled)?;
-        sides[start as usize / 3] = Some(self.line(start));
+        sides[start as usize / 3] = Some(self.line(start) & !FIXED);
         let mut open = vec![start / 3];
         while let Some(triangle) = open.pop() {
             let own = sides[triangle as usize].unwrap_or(0);
             for side in 3 * triangle..3 * triangle + 3 {
                 let other = self.beyond(side);
-                let across = own ^ self.line(side);
+                let across = own ^ (self.line(side) & !FIXED);
                 if other == BORDER {
                     if across != 0 {
                         return Err(Tangled);

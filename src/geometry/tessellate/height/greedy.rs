@@ -13,8 +13,11 @@ use rayon::prelude::{
 
 use super::chain::{Chain, Side};
 use super::delaunay::{BORDER, Delaunay, Place, next};
+use super::drawn::Tangled;
+use super::ground::{Ground, Value};
 use super::lattice::Lattice;
 use super::region::{Keep, Region, rim_edges};
+use super::round::{Round, draw_fixed};
 use super::scan::{Corner, Worst, edge, nodes};
 
 /// What is asked of the triangles.
@@ -27,6 +30,8 @@ pub(super) struct Goal<'r> {
     pub(super) limit: u64,
     /// What is kept; everything without it.
     pub(super) region: Option<(&'r Region, Keep)>,
+    /// How the map closes in itself.
+    pub(super) round: Round,
     /// A base, how far below it heights are raised to it, and how near to it corners on lines are set on it.
     pub(super) floor: Option<Floor>,
 }
@@ -50,14 +55,14 @@ pub(super) enum RefineError {
 }
 
 impl Floor {
-    fn raised(floor: Option<Self>, height: f64) -> f64 {
+    pub(super) fn raised(floor: Option<Self>, height: f64) -> f64 {
         match floor {
             Some(floor) if height < floor.base && height >= floor.base - floor.below => floor.base,
             _ => height,
         }
     }
 
-    fn on_line(floor: Option<Self>, height: f64) -> f64 {
+    pub(super) fn on_line(floor: Option<Self>, height: f64) -> f64 {
         match floor {
             Some(floor) if (height - floor.base).abs() <= floor.near => floor.base,
             _ => Self::raised(floor, height),
@@ -66,9 +71,9 @@ impl Floor {
 }
 
 /// Triangles over a field.
-pub(super) struct Triangles {
+pub(super) struct Triangles<V = f64> {
     pub(super) mesh: Delaunay,
-    pub(super) heights: Vec<f64>,
+    pub(super) heights: Vec<V>,
     /// How far they are from the lattice's function, its borders left out; at the nodes alone, unless everywhere.
     pub(super) error: f64,
 }
@@ -102,21 +107,21 @@ impl Ord for Need {
     }
 }
 
-struct Greedy<'l> {
-    lattice: &'l Lattice<'l>,
+struct Greedy<'l, G: Ground> {
+    lattice: &'l Lattice<'l, G>,
     goal: &'l Goal<'l>,
-    made: Triangles,
+    made: Triangles<G::Value>,
     versions: Vec<u32>,
     errors: Vec<f64>,
     needs: BinaryHeap<Need>,
 }
 
 /// Refines until the goal is met.
-pub(super) fn refine(
-    lattice: &Lattice<'_>,
+pub(super) fn refine<G: Ground>(
+    lattice: &Lattice<'_, G>,
     chains: &[Chain; 4],
     goal: &Goal<'_>,
-) -> Result<Triangles, RefineError> {
+) -> Result<Triangles<G::Value>, RefineError> {
     let mut greedy = Greedy {
         lattice,
         goal,
@@ -139,36 +144,35 @@ pub(super) fn refine(
 }
 
 /// Triangles between the borders and lines alone.
-pub(super) fn begun(
-    lattice: &Lattice<'_>,
+pub(super) fn begun<G: Ground>(
+    lattice: &Lattice<'_, G>,
     chains: &[Chain; 4],
     goal: &Goal<'_>,
-) -> Result<Triangles, RefineError> {
+) -> Result<Triangles<G::Value>, RefineError> {
     let mut mesh = Delaunay::new(lattice.far());
     draw_borders(&mut mesh, lattice, chains);
+    draw_fixed(&mut mesh, &goal.round.lines).map_err(|Tangled| RefineError::Tangled)?;
     let mut on_line = vec![false; mesh.places.len()];
     if let Some((region, keep)) = goal.region {
         let any = region.draw(&mut mesh, lattice, keep).map_err(|_| RefineError::Tangled)?;
         if !any {
             return Err(RefineError::Empty);
         }
+        goal.round.share(&mut mesh);
         on_line.resize(mesh.places.len(), false);
         rim_edges(&mesh).flatten().for_each(|corner| on_line[corner as usize] = true);
     }
-    let height = |(place, on_line): (&Place, &bool)| {
-        let height = lattice.height(*place);
-        if *on_line { Floor::on_line(goal.floor, height) } else { Floor::raised(goal.floor, height) }
-    };
+    let height = |(place, on_line): (&Place, &bool)| lattice.standing(*place, goal.floor, *on_line);
     let heights = mesh.places.iter().zip(&on_line).map(height).collect();
     Ok(Triangles { mesh, heights, error: 0.0 })
 }
 
-fn draw_borders(mesh: &mut Delaunay, lattice: &Lattice<'_>, chains: &[Chain; 4]) {
+fn draw_borders<G: Ground>(mesh: &mut Delaunay, lattice: &Lattice<'_, G>, chains: &[Chain; 4]) {
     let scale = f64::from(lattice.units) * f64::from(lattice.refine);
     for (side, chain) in Side::ALL.into_iter().zip(chains) {
         let mut near = 0;
         for along in &chain.steps {
-            let place = side.at(lattice.field, *along).map(|step| whole(step * scale));
+            let place = side.at(lattice.ground.grid(), *along).map(|step| whole(step * scale));
             if mesh.insert(place, near).is_some() {
                 near = mesh.changed[0];
             }
@@ -176,7 +180,7 @@ fn draw_borders(mesh: &mut Delaunay, lattice: &Lattice<'_>, chains: &[Chain; 4])
     }
 }
 
-impl Greedy<'_> {
+impl<G: Ground> Greedy<'_, G> {
     fn run(&mut self) -> Result<(), u64> {
         while let Some(need) = self.needs.pop() {
             let at = need.triangle as usize;
@@ -211,18 +215,19 @@ impl Greedy<'_> {
     /// Sets a corner at or near the place that needs one.
     fn insert(&mut self, need: &Need) -> bool {
         let far = self.lattice.far();
-        // The border has its own corners already.
-        let inside = |place: Place| [0, 1].map(|k| place[k].clamp(1, far[k] - 1));
-        if far[0] < 2 || far[1] < 2 {
+        // The border has its own corners already, and so have rings around poles.
+        let [first, last] = self.goal.round.rows(far);
+        if far[0] < 2 || last < first {
             return false;
         }
+        let inside = |place: Place| [place[0].clamp(1, far[0] - 1), place[1].clamp(first, last)];
         let middle = need.place.map(whole);
         let around = [(0, 0), (1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
         let near = around.map(|(dx, dy)| inside([middle[0] + dx, middle[1] + dy]));
         let center = inside(self.center(need.triangle).map(whole));
         for place in near.into_iter().chain([center]) {
             if self.made.mesh.insert(place, need.triangle).is_some() {
-                self.made.heights.push(Floor::raised(self.goal.floor, self.lattice.height(place)));
+                self.made.heights.push(self.lattice.standing(place, self.goal.floor, false));
                 return true;
             }
         }
@@ -248,13 +253,13 @@ impl Greedy<'_> {
         }
     }
 
-    fn corners(&self, triangle: u32) -> [Corner; 3] {
+    fn corners(&self, triangle: u32) -> [Corner<G::Value>; 3] {
         self.made.corners(triangle)
     }
 
     /// The greatest error of a triangle: at the nodes first, since a node is the better corner.
     fn judge(&self, triangle: u32) -> Worst {
-        if !self.made.mesh.keeps(triangle) {
+        if !self.made.mesh.keeps(triangle) || self.goal.round.at_pole(&self.made.mesh, triangle) {
             return Worst::NONE;
         }
         let worst = nodes(self.lattice, self.corners(triangle));
@@ -271,10 +276,10 @@ pub(super) fn whole(number: f64) -> i32 {
     number.round() as i32
 }
 
-impl Triangles {
+impl<V: Value> Triangles<V> {
     /// Makes every node of the lattice a corner that lies in what is kept: coarse ones first, so that no triangle is
     /// walked through often.
-    pub(super) fn insert_nodes(&mut self, lattice: &Lattice<'_>, goal: &Goal<'_>) {
+    pub(super) fn insert_nodes<G: Ground<Value = V>>(&mut self, lattice: &Lattice<'_, G>, goal: &Goal<'_>) {
         let (columns, rows) = (lattice.columns, lattice.rows);
         let mut step = columns.max(rows).next_power_of_two();
         let mut near = 0;
@@ -286,7 +291,7 @@ impl Triangles {
                     }
                     let place = [i, j].map(|node| whole(node as f64).saturating_mul(lattice.units));
                     if self.mesh.insert(place, near).is_some() {
-                        self.heights.push(Floor::raised(goal.floor, lattice.height(place)));
+                        self.heights.push(lattice.standing(place, goal.floor, false));
                         near = self.mesh.changed[0];
                     }
                 }
@@ -295,7 +300,7 @@ impl Triangles {
         }
     }
 
-    pub(super) fn corners(&self, triangle: u32) -> [Corner; 3] {
+    pub(super) fn corners(&self, triangle: u32) -> [Corner<V>; 3] {
         self.mesh.corners_of(triangle).map(|corner| {
             let at = corner as usize;
             (self.mesh.places[at], self.heights[at])
@@ -303,7 +308,7 @@ impl Triangles {
     }
 
     /// The greatest error along the edges of a triangle that have a triangle beyond and bound nothing.
-    fn along_edges(&self, lattice: &Lattice<'_>, triangle: u32) -> Worst {
+    fn along_edges<G: Ground<Value = V>>(&self, lattice: &Lattice<'_, G>, triangle: u32) -> Worst {
         let mut worst = Worst::NONE;
         for side in 3 * triangle..3 * triangle + 3 {
             if self.mesh.beyond(side) == BORDER || self.mesh.line(side) != 0 {
@@ -322,14 +327,14 @@ impl Triangles {
     }
 
     /// The greatest error along the edges that bound what is kept.
-    pub(super) fn along_rims(&self, lattice: &Lattice<'_>) -> f64 {
+    pub(super) fn along_rims<G: Ground<Value = V>>(&self, lattice: &Lattice<'_, G>) -> f64 {
         let corner = |corner: u32| (self.mesh.places[corner as usize], self.heights[corner as usize]);
         let errors = rim_edges(&self.mesh).map(|[from, to]| edge(lattice, corner(from), corner(to)).error);
         errors.fold(0.0, f64::max)
     }
 
     /// The greatest error everywhere but at the border, measured anew.
-    pub(super) fn measure(&self, lattice: &Lattice<'_>) -> f64 {
+    pub(super) fn measure<G: Ground<Value = V>>(&self, lattice: &Lattice<'_, G>) -> f64 {
         let of = |triangle: u32| {
             if !self.mesh.keeps(triangle) {
                 return 0.0;

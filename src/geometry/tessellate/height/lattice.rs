@@ -11,21 +11,23 @@ use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut
 
 use super::chain::Chain;
 use super::delaunay::Place;
-use crate::geometry::map::{GridField, Interpolation};
+use super::greedy::Floor;
+use super::ground::{Ground, Value as _};
+use crate::geometry::map::GridField;
 use crate::geometry::number::{floor_count, size};
 
-/// Values at the nodes of a grid over a field.
-pub(super) struct Lattice<'f> {
-    pub(super) field: &'f GridField,
+/// Values at the nodes of a grid over a function.
+pub(super) struct Lattice<'f, G: Ground = GridField> {
+    pub(super) ground: &'f G,
     /// Nodes in a row.
     pub(super) columns: usize,
     pub(super) rows: usize,
-    pub(super) values: Cow<'f, [f64]>,
+    pub(super) values: Cow<'f, [G::Value]>,
     /// Nodes to a step of the field.
     pub(super) refine: u32,
     /// Units to a step between nodes.
     pub(super) units: i32,
-    /// How far the field may be from the bilinear function between nodes.
+    /// How far the function may be from the bilinear function between nodes.
     pub(super) slack: f64,
 }
 
@@ -43,9 +45,6 @@ fn power_of_two(number: f64) -> u64 {
 
 /// The greatest sum of the bounds on second derivatives of a cell.
 pub(super) fn most_bend(field: &GridField) -> f64 {
-    if field.interpolation() == Interpolation::Bilinear {
-        return 0.0;
-    }
     let cells = (0..field.rows() - 1).flat_map(|j| (0..field.columns() - 1).map(move |i| (i, j)));
     cells.map(|(i, j)| field.bends(i, j)).fold(0.0, |most, (x, y)| most.max(x + y))
 }
@@ -55,34 +54,46 @@ pub(super) fn refinement(bend: f64, tolerance: f64) -> u64 {
     power_of_two((bend / tolerance).sqrt())
 }
 
-impl<'f> Lattice<'f> {
+impl<'f, G: Ground> Lattice<'f, G> {
     /// The samples themselves.
-    pub(super) fn coarse(field: &'f GridField) -> Self {
+    pub(super) fn coarse(ground: &'f G) -> Self {
+        let grid = ground.grid();
         Self {
-            field,
-            columns: field.columns(),
-            rows: field.rows(),
-            values: Cow::Borrowed(field.samples()),
+            ground,
+            columns: grid.columns(),
+            rows: grid.rows(),
+            values: ground.samples(),
             refine: 1,
             units: 1,
-            slack: most_bend(field) / 8.0,
+            slack: ground.bend() / 8.0,
         }
     }
 
     /// A grid fine enough for a tolerance everywhere, `finer` times finer in units than must be. Where there would be
     /// more than `limit` nodes or units, their number.
-    pub(super) fn fine(field: &'f GridField, tolerance: f64, finer: i32, limit: u64) -> Result<Self, u64> {
-        let bend = most_bend(field);
-        let refine = refinement(bend, tolerance);
-        let mut lattice = Self::coarse(field);
+    pub(super) fn fine(ground: &'f G, tolerance: f64, finer: i32, limit: u64) -> Result<Self, u64> {
+        Self::cut(ground, (tolerance, 1), finer, limit)
+    }
+
+    /// The same with at least so many nodes to a step.
+    pub(super) fn cut(
+        ground: &'f G,
+        (tolerance, least): (f64, u64),
+        finer: i32,
+        limit: u64,
+    ) -> Result<Self, u64> {
+        let bend = ground.bend();
+        let refine = refinement(bend, tolerance).max(least);
+        let mut lattice = if refine > 1 { Self::bare(ground) } else { Self::coarse(ground) };
         if refine > 1 {
-            let steps = [field.columns() - 1, field.rows() - 1].map(|steps| steps as u64);
+            let grid = ground.grid();
+            let steps = [grid.columns() - 1, grid.rows() - 1].map(|steps| steps as u64);
             let nodes = steps.map(|steps| steps.saturating_mul(refine).saturating_add(1));
             let all = nodes[0].saturating_mul(nodes[1]);
             if all > limit {
                 return Err(all);
             }
-            lattice = Self::refined(field, refine as f64, nodes.map(size));
+            lattice = Self::refined(ground, refine as f64, nodes.map(size));
             lattice.slack = bend / 8.0 / (refine * refine) as f64;
         }
         let rest = 0.9 * (tolerance - lattice.slack);
@@ -122,25 +133,31 @@ impl<'f> Lattice<'f> {
         }
     }
 
-    fn refined(field: &'f GridField, refine: f64, [columns, rows]: [usize; 2]) -> Self {
-        let mut values = vec![0.0; columns * rows];
+    /// One without values.
+    fn bare(ground: &'f G) -> Self {
+        let values = Cow::Owned(Vec::new());
+        Self { ground, columns: 0, rows: 0, values, refine: 1, units: 1, slack: 0.0 }
+    }
+
+    fn refined(ground: &'f G, refine: f64, [columns, rows]: [usize; 2]) -> Self {
+        let mut values = vec![G::Value::default(); columns * rows];
         values.par_chunks_exact_mut(columns).enumerate().for_each(|(j, row)| {
             let y = j as f64 / refine;
             for (i, value) in row.iter_mut().enumerate() {
-                *value = field.value(i as f64 / refine, y);
+                *value = ground.at(i as f64 / refine, y);
             }
         });
         let refine = floor_count(refine);
-        Self { field, columns, rows, values: Cow::Owned(values), refine, units: 1, slack: 0.0 }
+        Self { ground, columns, rows, values: Cow::Owned(values), refine, units: 1, slack: 0.0 }
     }
 
     /// The greatest mixed difference of a cell: by a quarter of it a cell rises above its diagonals' means.
     pub(super) fn most_twist(&self) -> f64 {
         let pairs =
             self.values.chunks_exact(self.columns).zip(self.values.chunks_exact(self.columns).skip(1));
-        let twist = |(near, far): (&[f64], &[f64])| {
+        let twist = |(near, far): (&[G::Value], &[G::Value])| {
             let cells = near.windows(2).zip(far.windows(2));
-            cells.map(|(a, b)| (a[0] - a[1] - b[0] + b[1]).abs()).fold(0.0, f64::max)
+            cells.map(|(a, b)| (a[0] - a[1] - b[0] + b[1]).size()).fold(0.0, f64::max)
         };
         pairs.map(twist).fold(0.0, f64::max)
     }
@@ -156,13 +173,18 @@ impl<'f> Lattice<'f> {
         place.map(|unit| f64::from(unit) / (f64::from(self.units) * f64::from(self.refine)))
     }
 
-    /// The field at a place.
-    pub(super) fn height(&self, place: Place) -> f64 {
+    /// The value at a place.
+    pub(super) fn height(&self, place: Place) -> G::Value {
         if let [Some(i), Some(j)] = place.map(|unit| self.node(unit)) {
             return self.values[j * self.columns + i];
         }
         let [x, y] = self.steps(place);
-        self.field.value(x, y)
+        self.ground.at(x, y)
+    }
+
+    /// The value at a place next to a base.
+    pub(super) fn standing(&self, place: Place, floor: Option<Floor>, on_line: bool) -> G::Value {
+        self.ground.standing(self.steps(place), self.height(place), floor, on_line)
     }
 
     /// The node at a coordinate, if there is one.

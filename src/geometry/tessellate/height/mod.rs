@@ -5,6 +5,7 @@
 //! tolerance alone, so neighbouring maps that share a row of samples meet without a crack. A closed map is closed by its
 //! points, not by nearness. Not promised: equal normals on both sides of such a seam.
 
+mod based;
 mod chain;
 mod close;
 mod contour;
@@ -12,10 +13,12 @@ mod delaunay;
 mod dense;
 mod drawn;
 mod greedy;
+mod ground;
 mod lattice;
 #[cfg(test)]
 mod masked;
 mod region;
+mod round;
 mod scan;
 mod scribe;
 mod sector;
@@ -23,6 +26,7 @@ mod sector;
 mod tests;
 mod two_sided;
 
+pub use based::{Base, BaseFault, BaseSurface, BasedMap, Chart, Layer, SurfaceBase, based_map};
 pub use two_sided::{TwoSided, two_sided};
 
 use std::sync::Arc;
@@ -39,6 +43,7 @@ use delaunay::BORDER;
 use greedy::{Floor, Goal, RefineError, Triangles, begun, refine};
 use lattice::Lattice;
 use region::{Keep, Region, RegionError, grain, rims};
+use round::Round;
 
 /// A field of heights over a rectangle in the x, z plane about the origin: columns go to +x, rows to +z.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,6 +100,8 @@ pub enum Closing {
     Base(f64),
     /// By a second sheet this far below.
     Thickness(f64),
+    /// By flat ends across the axis of a cylinder that it goes all around.
+    Ends,
 }
 
 impl HeightMap {
@@ -201,6 +208,7 @@ fn adaptive(
             everywhere,
             limit,
             region: region.as_ref().map(|region| (region, Keep::ONLY)),
+            round: Round::OPEN,
             floor: floor(shape, tolerance),
         };
         let made = refine(&lattice, &chains, &goal).map_err(|error| of_refining(error, limit))?;
@@ -244,6 +252,7 @@ fn dense_region(
         everywhere: false,
         limit,
         region: Some((&region, Keep::ONLY)),
+        round: Round::OPEN,
         floor: floor(shape, tolerance),
     };
     let mut made = begun(&lattice, &chains, &goal).map_err(|error| of_refining(error, limit))?;
@@ -321,8 +330,11 @@ fn up([a, b, c]: [u32; 3]) -> [VertexIndex; 3] {
     [VertexIndex(a), VertexIndex(c), VertexIndex(b)]
 }
 
-fn tessellation(mut mesh: Mesh, bound: f64) -> Tessellation {
+fn tessellation(mesh: Mesh, bound: f64) -> Tessellation {
+    tessellated(mesh, bound, Evidence::Proved)
+}
+
+fn tessellated(mut mesh: Mesh, bound: f64, evidence: Evidence) -> Tessellation {
     mesh.runs = vec![Run { origin: 0, end: mesh::index(mesh.triangles.len()) }];
-    let evidence = if bound == 0.0 { Evidence::Exact } else { Evidence::Proved };
-    Tessellation { mesh, deviation: Deviation { bound, evidence } }
+    Tessellation { mesh, deviation: Deviation::new(bound, evidence) }
 }

@@ -11,9 +11,10 @@
 use glam::DVec2;
 
 use super::chain::Side;
-use super::delaunay::{BORDER, Delaunay, Place, next};
+use super::delaunay::{BORDER, Delaunay, FIXED, Place, next};
 use super::drawn::Tangled;
 use super::greedy::whole;
+use super::ground::Ground;
 use super::lattice::Lattice;
 use super::scribe::{Lines, Scribe, level_cells};
 use super::sector::{Sector, cut_sectors, sectors};
@@ -90,9 +91,9 @@ impl Region {
     }
 
     /// Traces the lines of the masks of maps over one grid. Their chords are within `rise` of the heights on all lattices.
-    pub(super) fn trace(
+    pub(super) fn trace<G: Ground>(
         maps: &[&HeightMap],
-        lattices: &[Lattice<'_>],
+        lattices: &[Lattice<'_, G>],
         (tolerance, rise): (f64, f64),
         limit: u64,
     ) -> Result<Self, RegionError> {
@@ -117,7 +118,7 @@ impl Region {
         Ok(region)
     }
 
-    fn add_map(&mut self, scribe: &Scribe<'_>, map: &HeightMap) -> Result<(), RegionError> {
+    fn add_map<G: Ground>(&mut self, scribe: &Scribe<'_, G>, map: &HeightMap) -> Result<(), RegionError> {
         let mut test = Test::default();
         for mask in &map.masks {
             let bit = self.next_bit();
@@ -145,7 +146,7 @@ impl Region {
     }
 
     /// Keeps cells whose samples all have values.
-    fn add_gaps(&mut self, scribe: &Scribe<'_>, field: &GridField, test: &mut Test) {
+    fn add_gaps<G: Ground>(&mut self, scribe: &Scribe<'_, G>, field: &GridField, test: &mut Test) {
         if field.has_gaps() {
             let bit = self.next_bit();
             test.bits |= bit;
@@ -161,10 +162,10 @@ impl Region {
     }
 
     /// Draws the lines and marks the triangles that are kept. Whether any is.
-    pub(super) fn draw(
+    pub(super) fn draw<G: Ground>(
         &self,
         mesh: &mut Delaunay,
-        lattice: &Lattice<'_>,
+        lattice: &Lattice<'_, G>,
         keep: Keep,
     ) -> Result<bool, Tangled> {
         let factor = whole(f64::from(lattice.units) * f64::from(lattice.refine) / self.grain as f64).max(1);
@@ -292,16 +293,13 @@ impl Region {
         let mut free = Vec::new();
         for edge in 0..3 * mesh.triangles() {
             let other = mesh.beyond(edge);
-            if mesh.line(edge) == 0
-                || other == BORDER
-                || other < edge
-                || mesh.keeps(edge / 3) != mesh.keeps(other / 3)
+            let lines = mesh.line(edge) & !FIXED;
+            if lines == 0 || other == BORDER || other < edge || mesh.keeps(edge / 3) != mesh.keeps(other / 3)
             {
                 continue;
             }
-            let lines = mesh.line(edge);
             mesh.toggle(edge, lines);
-            if mesh.keeps(edge / 3) {
+            if mesh.keeps(edge / 3) && mesh.line(edge) == 0 {
                 free.push([edge, next(edge)].map(|side| mesh.corners[side as usize]));
             }
         }
@@ -370,6 +368,6 @@ fn twice_area(mesh: &Delaunay, ring: &[u32]) -> i128 {
 /// The edges that bound what is kept, as pairs of corners.
 pub(super) fn rim_edges(mesh: &Delaunay) -> impl Iterator<Item = [u32; 2]> + '_ {
     (0..3 * mesh.triangles())
-        .filter(|edge| mesh.line(*edge) != 0 && mesh.keeps(*edge / 3))
+        .filter(|edge| mesh.line(*edge) & !FIXED != 0 && mesh.keeps(*edge / 3))
         .map(|edge| [edge, next(edge)].map(|side| mesh.corners[side as usize]))
 }

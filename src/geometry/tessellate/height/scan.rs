@@ -5,6 +5,7 @@
 //! So the nodes inside and the exact greatest along three edges prove the greatest everywhere.
 
 use super::delaunay::{Place, turn};
+use super::ground::{Ground, Value};
 use super::lattice::Lattice;
 
 /// The greatest distance found and where.
@@ -18,8 +19,8 @@ impl Worst {
     pub(super) const NONE: Self = Self { error: 0.0, place: [0.0; 2] };
 }
 
-/// A corner of a triangle and its height.
-pub(super) type Corner = (Place, f64);
+/// A corner of a triangle and what stands there.
+pub(super) type Corner<V = f64> = (Place, V);
 
 /// The greatest error at the nodes in a triangle, those of the lattice's border left out. The place is in units.
 #[expect(
@@ -28,7 +29,7 @@ pub(super) type Corner = (Place, f64);
     clippy::cast_sign_loss,
     reason = "counts of nodes fit 29 bits"
 )]
-pub(super) fn nodes(lattice: &Lattice<'_>, corners: [Corner; 3]) -> Worst {
+pub(super) fn nodes<G: Ground>(lattice: &Lattice<'_, G>, corners: [Corner<G::Value>; 3]) -> Worst {
     let units = i64::from(lattice.units);
     let plane = Plane::of(corners, units as f64);
     let mut sorted = corners.map(|(place, _)| place.map(i64::from));
@@ -51,7 +52,7 @@ pub(super) fn nodes(lattice: &Lattice<'_>, corners: [Corner; 3]) -> Worst {
         let start = row as usize * lattice.columns;
         let values = &lattice.values[start + from as usize..=start + to as usize];
         let base = plane.at(from as f64, row as f64);
-        let most = greatest(values, base, plane.across);
+        let most = G::Value::greatest(values, base, plane.across);
         if most > worst.0 {
             let at = position(values, base, plane.across, most);
             worst = (most, from + at as i64, row);
@@ -66,15 +67,15 @@ fn sorted_place(place: [i64; 2]) -> Place {
 }
 
 /// The plane of a triangle over nodes.
-struct Plane {
+struct Plane<V> {
     origin: [f64; 2],
-    height: f64,
-    across: f64,
-    along: f64,
+    height: V,
+    across: V,
+    along: V,
 }
 
-impl Plane {
-    fn of(corners: [Corner; 3], units: f64) -> Self {
+impl<V: Value> Plane<V> {
+    fn of(corners: [Corner<V>; 3], units: f64) -> Self {
         let [a, b, c] = corners.map(|(place, _)| place.map(|part| f64::from(part) / units));
         let [za, zb, zc] = corners.map(|(_, height)| height);
         let (ab, ac) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
@@ -87,7 +88,7 @@ impl Plane {
         }
     }
 
-    fn at(&self, x: f64, y: f64) -> f64 {
+    fn at(&self, x: f64, y: f64) -> V {
         self.height + self.across * (x - self.origin[0]) + self.along * (y - self.origin[1])
     }
 }
@@ -114,40 +115,22 @@ fn numerator(from: [i64; 2], to: [i64; 2], y: i64) -> i64 {
     from[0] * denominator(from, to) + (to[0] - from[0]) * (y - from[1])
 }
 
-/// The greatest size of `values[k] - (base + k slope)`. Eight at a time, so that the machine can work on several at once.
-fn greatest(values: &[f64], base: f64, slope: f64) -> f64 {
-    const LANES: usize = 8;
-    let mut most = [0.0_f64; LANES];
-    let chunks = values.chunks_exact(LANES);
-    let rest = chunks.remainder();
-    let mut offset = 0.0;
-    for chunk in chunks {
-        for (lane, value) in chunk.iter().enumerate() {
-            let error = (value - (base + (offset + LANE[lane]) * slope)).abs();
-            most[lane] = if error > most[lane] { error } else { most[lane] };
-        }
-        offset += LANES as f64;
-    }
-    let mut all = most.into_iter().fold(0.0, f64::max);
-    for (lane, value) in rest.iter().enumerate() {
-        all = f64::max(all, (value - (base + (offset + LANE[lane]) * slope)).abs());
-    }
-    all
-}
-
-const LANE: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-
-/// Where [`greatest`] found its value.
-fn position(values: &[f64], base: f64, slope: f64, most: f64) -> usize {
+/// Where [`Value::greatest`] found its value.
+fn position<V: Value>(values: &[V], base: V, slope: V, most: f64) -> usize {
+    let reached = most * (1.0 - V::LOSS);
     values
         .iter()
         .enumerate()
-        .position(|(k, value)| (value - (base + k as f64 * slope)).abs() >= most)
+        .position(|(k, value)| (*value - (base + slope * k as f64)).size() >= reached)
         .unwrap_or(0)
 }
 
-/// The greatest error along an edge, exact but for rounding. The place is in units.
-pub(super) fn edge(lattice: &Lattice<'_>, (from, start): Corner, (to, end): Corner) -> Worst {
+/// The greatest error along an edge, as exact as [`Value::crest`]. The place is in units.
+pub(super) fn edge<G: Ground>(
+    lattice: &Lattice<'_, G>,
+    (from, start): Corner<G::Value>,
+    (to, end): Corner<G::Value>,
+) -> Worst {
     let units = f64::from(lattice.units);
     let a = from.map(|part| f64::from(part) / units);
     let b = to.map(|part| f64::from(part) / units);
@@ -172,14 +155,12 @@ pub(super) fn edge(lattice: &Lattice<'_>, (from, start): Corner, (to, end): Corn
         let cell = Cell::of(lattice, middle);
         let gap = |part: f64| cell.value(at(part)) - line(part);
         let (near, far) = (gap(before), gap(after));
-        note(near.abs(), before);
-        note(far.abs(), after);
-        // near (1 - t) + far t - bend t (1 - t) is greatest where its derivative vanishes.
+        note(near.size(), before);
+        note(far.size(), after);
         let length = after - before;
         let bend = cell.twist * way[0] * way[1] * length * length;
-        let t = 0.5 - (far - near) / (2.0 * bend);
-        if t > 0.0 && t < 1.0 {
-            note((near * (1.0 - t) + far * t - bend * t * (1.0 - t)).abs(), before + length * t);
+        if let Some((most, t)) = G::Value::crest(near, far, bend) {
+            note(most, before + length * t);
         }
         before = after;
     }
@@ -213,14 +194,14 @@ impl Stops {
 }
 
 /// A cell of the lattice.
-struct Cell {
+struct Cell<V> {
     origin: [f64; 2],
-    values: [f64; 4],
-    twist: f64,
+    values: [V; 4],
+    twist: V,
 }
 
-impl Cell {
-    fn of(lattice: &Lattice<'_>, place: [f64; 2]) -> Self {
+impl<V: Value> Cell<V> {
+    fn of<G: Ground<Value = V>>(lattice: &Lattice<'_, G>, place: [f64; 2]) -> Self {
         let index = |part: f64, count: usize| crate::geometry::number::floor_index(part).min(count - 2);
         let (i, j) = (index(place[0], lattice.columns), index(place[1], lattice.rows));
         let at = j * lattice.columns + i;
@@ -230,7 +211,7 @@ impl Cell {
         Self { origin: [i as f64, j as f64], values, twist }
     }
 
-    fn value(&self, place: [f64; 2]) -> f64 {
+    fn value(&self, place: [f64; 2]) -> V {
         let (s, t) = (place[0] - self.origin[0], place[1] - self.origin[1]);
         let [a, b, c, d] = self.values;
         (a * (1.0 - s) + b * s) * (1.0 - t) + (c * (1.0 - s) + d * s) * t

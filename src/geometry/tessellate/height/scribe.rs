@@ -7,6 +7,7 @@ use super::chain::Side;
 use super::contour::{Contour, Step, Trace, cancelled, thinned, trace};
 use super::delaunay::Place;
 use super::greedy::whole;
+use super::ground::Ground;
 use super::lattice::Lattice;
 use super::region::RegionError;
 use super::scan::edge;
@@ -35,16 +36,16 @@ pub(super) fn level_cells(field: &GridField, threshold: f64) -> impl Fn(usize, u
 }
 
 /// Brings lines onto the grid.
-pub(super) struct Scribe<'s> {
+pub(super) struct Scribe<'s, G: Ground> {
     pub(super) shape: &'s HeightMap,
-    pub(super) lattices: &'s [Lattice<'s>],
+    pub(super) lattices: &'s [Lattice<'s, G>],
     pub(super) rise: f64,
     pub(super) grain: u64,
     pub(super) error: f64,
     pub(super) limit: u64,
 }
 
-impl Scribe<'_> {
+impl<G: Ground> Scribe<'_, G> {
     pub(super) fn mask(&self, bit: u32, field: &GridField, threshold: f64) -> Result<Lines, RegionError> {
         let step = self.shape.size / DVec2::from_array(field.extent());
         let how = Trace { threshold, step, tolerance: self.error / 2.0, limit: self.limit };

@@ -18,6 +18,7 @@ use super::delaunay::{BORDER, Delaunay, Place};
 use super::greedy::{Floor, Goal, Triangles, begun, refine};
 use super::lattice::Lattice;
 use super::region::{Keep, Region, grain, rims};
+use super::round::Round;
 use super::{HeightMap, border_tolerance, of_refining, of_region, push, tessellation, up};
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Vertex, index};
 use crate::geometry::tessellate::{Detail, SurfaceDensity, TessellateError, Tessellation};
@@ -55,8 +56,8 @@ pub fn two_sided(shape: &TwoSided, detail: &Detail, tolerance: f64) -> Result<Te
     // Borders are cut about as finely as the lattices, which are allowed first.
     let most = limit.saturating_mul(8);
     let fine = [
-        Lattice::fine(&front.field, aim, 1, most).map_err(too_many)?,
-        Lattice::fine(&back.field, aim, 1, most).map_err(too_many)?,
+        Lattice::fine(&*front.field, aim, 1, most).map_err(too_many)?,
+        Lattice::fine(&*back.field, aim, 1, most).map_err(too_many)?,
     ];
     let chains = merged(&sides, border);
     let grain = grain(front, tolerance);
@@ -81,6 +82,7 @@ pub fn two_sided(shape: &TwoSided, detail: &Detail, tolerance: f64) -> Result<Te
             everywhere: true,
             limit,
             region: Some((&region, keep)),
+            round: Round::OPEN,
             floor,
         };
         let side = refine(lattice, &chains, &goal).map_err(|error| of_refining(error, limit))?;
@@ -92,7 +94,14 @@ pub fn two_sided(shape: &TwoSided, detail: &Detail, tolerance: f64) -> Result<Te
     body.add_side(&made[1], 1)?;
     for (of, without) in [(0, 1), (1, 0)] {
         let keep = Keep { of, without: Some(without) };
-        let goal = Goal { tolerance: aim, everywhere: false, limit, region: Some((&region, keep)), floor };
+        let goal = Goal {
+            tolerance: aim,
+            everywhere: false,
+            limit,
+            region: Some((&region, keep)),
+            round: Round::OPEN,
+            floor,
+        };
         match begun(&lattices[0], &chains, &goal) {
             Ok(flat) => body.add_flat(&flat.mesh, of),
             Err(super::greedy::RefineError::Empty) => {}
