@@ -25,7 +25,8 @@ pub struct Closes {
 
 impl GridField {
     /// The field as it closes: where the last column of a closed one does not repeat the first, the first follows it, and
-    /// so for rows; a row that is a point has the mean of its samples. Splines are smooth across the seam.
+    /// so for rows; a row that is a point has the mean of its samples,
+    /// and no value where one of them has none. Splines are smooth across the seam.
     #[must_use]
     pub fn closed(&self, how: Closes) -> Self {
         let Self { columns, rows, .. } = *self;
@@ -41,7 +42,7 @@ impl GridField {
         let from = |i: usize, j: usize| (j % rows) * columns + i % columns;
         let places = || (0..high).flat_map(|j| (0..wide).map(move |i| (i, j)));
         let mut values: Vec<f64> = places().map(|(i, j)| self.values[from(i, j)]).collect();
-        let unknown = if self.unknown.is_empty() {
+        let mut unknown = if self.unknown.is_empty() {
             Vec::new()
         } else {
             places().map(|(i, j)| self.unknown[from(i, j)]).collect()
@@ -50,6 +51,10 @@ impl GridField {
             if point {
                 let mean = self.point_of(row.min(rows - 1), how.columns).0;
                 values[row * wide..(row + 1) * wide].fill(mean);
+                if let Some(unknown) = unknown.get_mut(row * wide..(row + 1) * wide) {
+                    let any = unknown.contains(&true);
+                    unknown.fill(any);
+                }
             }
         }
         let slopes = match self.interpolation() {

@@ -9,7 +9,7 @@
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
-use crate::geometry::curve::Domain;
+use crate::geometry::curve::{Curve as _, Domain};
 use crate::geometry::map::Closes;
 use crate::geometry::number::sin_cos_degrees;
 use crate::geometry::surface::{AnySurface, ExtrudedSurface, RevolvedSurface, Surface, SurfaceJet};
@@ -335,6 +335,15 @@ impl BaseSurface {
         each_kind!(self, surface => (surface.domain_u(), surface.domain_v()))
     }
 
+    /// Where tangents jump along u and along v.
+    fn joints(&self) -> (Vec<f64>, Vec<f64>) {
+        match self {
+            Self::Any(surface) => (surface.joints_u(), surface.joints_v()),
+            Self::Turned(turned) => (Vec::new(), turned.profile.joints()),
+            Self::Pushed(pushed) => (pushed.profile.joints(), Vec::new()),
+        }
+    }
+
     fn evaluate(&self, u: f64, v: f64) -> SurfaceJet {
         each_kind!(self, surface => surface.evaluate(u, v))
     }
@@ -342,6 +351,9 @@ impl BaseSurface {
 
 /// Places that are looked at along each parameter.
 const PLACES: u32 = 48;
+
+/// Jumps of the normal that smooth constructions stay below.
+const JUMP: f64 = 1e-5;
 
 /// Sides that lie nearer to each other than this share of the size are one line.
 const SAME: f64 = 1e-9;
@@ -380,9 +392,7 @@ impl SurfaceBase {
     }
 
     fn check_edges(&self) -> Result<(), BaseFault> {
-        /// Jumps of the normal that smooth constructions stay below.
-        const JUMP: f64 = 1e-5;
-        let joints = each_kind!(&self.surface, surface => (surface.joints_u(), surface.joints_v()));
+        let joints = self.surface.joints();
         let within = |t: &f64, range: [f64; 2]| *t > range[0] && *t < range[1];
         for (along_v, joints, range, other) in
             [(true, joints.0, self.u, self.v), (false, joints.1, self.v, self.u)]
@@ -429,6 +439,32 @@ impl SurfaceBase {
         if twisted || flipped {
             return Err(BaseFault::Twisted);
         }
+        let apart = |one: (f64, f64), other: (f64, f64)| {
+            self.at(one.0, one.1).normal.distance(self.at(other.0, other.1).normal)
+        };
+        let inner = || (1..PLACES).map(part);
+        // At a point normals are limits, which formulas know less well.
+        let ends = [
+            (columns, true, self.u[1], inner().map(|t| apart((0.0, t), (1.0, t))).fold(0.0, f64::max)),
+            (rows, false, self.v[1], inner().map(|s| apart((s, 0.0), (s, 1.0))).fold(0.0, f64::max)),
+            (
+                first,
+                false,
+                self.v[1],
+                inner().map(|s| apart((s, 0.0), (0.0, 0.0))).fold(0.0, f64::max) / 100.0,
+            ),
+            (
+                last,
+                false,
+                self.v[0],
+                inner().map(|s| apart((s, 1.0), (0.0, 1.0))).fold(0.0, f64::max) / 100.0,
+            ),
+        ];
+        for (closes, along_v, at, jump) in ends {
+            if closes && jump > JUMP {
+                return Err(BaseFault::Edge { along_v, at });
+            }
+        }
         self.closes = Closes { columns, rows, first, last };
         Ok(())
     }
@@ -470,6 +506,25 @@ impl SurfaceBase {
         }
         self.turned = sense > 0.0;
         Ok(())
+    }
+
+    /// A radius that ways around it do not come below, but near its points; infinite where it does not close.
+    pub(super) fn girth(&self) -> f64 {
+        let reach = |line: &dyn Fn(f64) -> DVec3| {
+            (0..=PLACES).map(|k| line(part(k)).distance(line(0.0))).fold(0.0, f64::max) / 2.0
+        };
+        let lines = (0..=PLACES).map(part);
+        let mut least = f64::INFINITY;
+        for at in lines {
+            let near = (self.closes.first && at < 0.125) || (self.closes.last && at > 0.875);
+            if self.closes.columns && !near {
+                least = least.min(reach(&|s| self.at(s, at).point));
+            }
+            if self.closes.rows {
+                least = least.min(reach(&|t| self.at(at, t).point));
+            }
+        }
+        least
     }
 
     /// Parameters of a place.

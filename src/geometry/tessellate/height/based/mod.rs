@@ -198,7 +198,7 @@ impl BasedMap {
         match &self.base {
             Base::Ellipsoid { radii, .. } => radii.min_element() + low.min(0.0),
             Base::Cylinder { radius, .. } => radius + low.min(0.0),
-            Base::Surface(_) => f64::INFINITY,
+            Base::Surface(base) => base.girth() + low.min(0.0),
         }
     }
 }
@@ -216,8 +216,9 @@ pub fn based_map(map: &BasedMap, detail: &Detail, tolerance: f64) -> Result<Tess
         SurfaceDensity::Grid { .. } => tolerance,
     };
     // A tolerance about as large as the base would lose the base itself.
-    let least = map.least_radius().max(f64::MIN_POSITIVE);
-    let (aim, tolerance) = (aim.min(least / 4.0), tolerance.min(least / 4.0));
+    let least = map.least_radius() / 4.0;
+    let (aim, tolerance) =
+        if least > 0.0 { (aim.min(least), tolerance.min(least)) } else { (aim, tolerance) };
     let skins: Vec<Skin<'_>> = layers.iter().map(|layer| Skin::new(map, *layer)).collect();
     let (sheets, bound) = if map.heights.bound == HeightBound::Dense && !Region::is_needed(&map.heights) {
         dense(map, &skins, detail)?

@@ -1,5 +1,7 @@
 //! One skin as triangles between places.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use glam::DVec3;
 
 use super::super::delaunay::{BORDER, Place, next};
@@ -66,7 +68,50 @@ impl Sheet {
                 }
             }
         }
+        for end in [0, 1] {
+            if sheet.round.poles[end] && sheet.is_torn(end) {
+                sheet.leave_out_cone(end);
+            }
+        }
         sheet
+    }
+
+    /// Whether what is kept touches itself in a pole.
+    fn is_torn(&self, end: usize) -> bool {
+        let pole = self.round.place(self.far, [0, if end == 0 { 0 } else { self.far[1] }]);
+        self.open_sides().iter().filter(|ends| self.place(ends[0]) == pole).count() > 1
+    }
+
+    /// Takes away the triangles between a pole and its ring.
+    fn leave_out_cone(&mut self, end: usize) {
+        let ring = self.round.ring + 1;
+        let (far, places) = (self.far[1], &self.places);
+        let in_cone = |corner: &u32| {
+            let row = places[*corner as usize][1];
+            if end == 0 { row <= ring } else { row >= far - ring }
+        };
+        self.triangles.retain(|corners| !corners.iter().all(in_cone));
+        let sides = self.triangles.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]);
+        let mut open = BTreeSet::new();
+        for [from, to] in sides {
+            if !open.remove(&[to, from]) {
+                open.insert([from, to]);
+            }
+        }
+        self.rim = open.into_iter().collect();
+    }
+
+    /// Sides with nothing beyond when seams and poles are closed.
+    pub(super) fn open_sides(&self) -> Vec<[u32; 2]> {
+        let mut found: BTreeMap<[Place; 2], [u32; 2]> = BTreeMap::new();
+        for ends in &self.rim {
+            let [from, to] = ends.map(|corner| self.place(corner));
+            if from == to || found.remove(&[to, from]).is_some() {
+                continue;
+            }
+            found.insert([from, to], *ends);
+        }
+        found.into_values().collect()
     }
 
     /// The whole grid, each cell cut along its shorter diagonal, and how far it is from the skin.

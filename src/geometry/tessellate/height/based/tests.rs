@@ -311,12 +311,11 @@ fn profiles_that_run_down_look_outward_too() {
 #[test]
 fn what_runs_through_itself_is_refused_with_the_place() {
     let even = |height: f64| heights(sampled(5, 4, Interpolation::Bilinear, |_, _| height), Closing::None);
-    let refused = |base: Base, shape: HeightMap| {
-        match based_map(&BasedMap::new(base, shape), &detail(0.01), 0.01) {
+    let refused =
+        |base: Base, shape: HeightMap| match based_map(&BasedMap::new(base, shape), &detail(0.01), 0.01) {
             Err(TessellateError::CrossesItself { place }) => place,
             other => panic!("{other:?}"),
-        }
-    };
+        };
     refused(sphere(1.0), even(-1.0));
     refused(cylinder(1.0, 1.0), even(-1.25));
     // A long ellipsoid is curved most at its tips: with the radius 0.5^2 / 2.
@@ -340,7 +339,7 @@ fn what_runs_through_itself_is_refused_with_the_place() {
         to: 180.0,
     };
     let [there, back] = straight;
-    let path = crate::geometry::curve::Path::new(vec![there, AnyCurve::Ellipse(bow), back], 1e-9);
+    let path = crate::geometry::curve::Path::new(vec![there, AnyCurve::Ellipse(bow), back]);
     let profile = AnyCurve::Path(path.unwrap());
     let wall = |profile: AnyCurve| {
         surface(BaseSurface::Pushed(ExtrudedSurface { profile, bottom: 0.0, height: 0.5 }))
@@ -358,7 +357,8 @@ fn what_runs_through_itself_is_refused_with_the_place() {
 fn surfaces_with_edges_and_twists_are_no_bases() {
     let corners = [(0.5, 0.0), (0.5, 1.0), (0.2, 1.5)].map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
     let profile = AnyCurve::Polyline(Polyline::new(corners, false).unwrap());
-    let turned = |profile: AnyCurve| BaseSurface::Turned(RevolvedSurface { profile, start: 0.0, angle: 360.0 });
+    let turned =
+        |profile: AnyCurve| BaseSurface::Turned(RevolvedSurface { profile, start: 0.0, angle: 360.0 });
     let edged = SurfaceBase::new(turned(profile.clone()), DAffine3::IDENTITY, None, None);
     assert!(matches!(edged, Err(BaseFault::Edge { along_v: false, .. })), "{edged:?}");
     // On one side of the edge it is smooth.

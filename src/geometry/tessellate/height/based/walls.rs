@@ -40,7 +40,7 @@ pub(super) fn joined(
     let top = add_skin(map, layers[0], &sheets[0], &mut mesh, (0, None), detail);
     if let (Some(layer), Some(sheet)) = (layers.get(1), sheets.get(1)) {
         let under = add_skin(map, *layer, sheet, &mut mesh, (UNDER, Some(&top)), detail);
-        add_walls(map, &top, &under, &mut mesh, detail);
+        add_walls(&top, &under, &mut mesh, detail)?;
     }
     if map.heights.close == Closing::Ends {
         add_ends(&top, &mut mesh, detail)?;
@@ -128,7 +128,8 @@ fn add_skin(
     }
     smooth_poles(mesh, &at_poles, first);
     let turned = |ends: &[u32; 2]| if looks_up { [ends[1], ends[0]] } else { *ends };
-    let rim = open_sides(sheet, &points)
+    let rim = sheet
+        .open_sides()
         .into_iter()
         .map(|ends| turned(&ends).map(|corner| (sheet.place(corner), points[corner as usize])));
     Placed { rim: rim.collect(), shared }
@@ -171,50 +172,37 @@ fn smooth_poles(mesh: &mut Mesh, at_poles: &[(u32, usize)], first: u32) {
     }
 }
 
-/// Sides with nothing beyond when seams and poles are closed.
-fn open_sides(sheet: &Sheet, points: &[PointIndex]) -> Vec<[u32; 2]> {
-    let key = |ends: &[u32; 2]| ends.map(|corner| points[corner as usize].0);
-    let mut found: BTreeMap<[u32; 2], [u32; 2]> = BTreeMap::new();
-    for ends in &sheet.rim {
-        let [from, to] = key(ends);
-        if from == to || found.remove(&[to, from]).is_some() {
-            continue;
+/// Loops of rim sides, one after the other by their points. None where rims touch in a point: walls there would share an
+/// edge.
+fn loops(rim: &[[(Place, PointIndex); 2]]) -> Result<Vec<Vec<usize>>, TessellateError> {
+    let mut leaving: BTreeMap<u32, usize> = BTreeMap::new();
+    for (at, [(_, from), _]) in rim.iter().enumerate() {
+        if leaving.insert(from.0, at).is_some() {
+            return Err(TessellateError::Tangled);
         }
-        found.insert([from, to], *ends);
-    }
-    found.into_values().collect()
-}
-
-/// Loops of rim sides, one after the other by their points.
-fn loops(rim: &[[(Place, PointIndex); 2]]) -> Vec<Vec<usize>> {
-    let mut leaving: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-    for (at, [(_, from), _]) in rim.iter().enumerate().rev() {
-        leaving.entry(from.0).or_default().push(at);
     }
     let mut used = vec![false; rim.len()];
     let mut all = Vec::new();
     for first in 0..rim.len() {
-        if used[first] {
-            continue;
-        }
         let mut ring = Vec::new();
         let mut at = first;
         while !used[at] {
             used[at] = true;
             ring.push(at);
-            let after = leaving.get(&rim[at][1].1.0).and_then(|list| list.iter().find(|next| !used[**next]));
-            let Some(next) = after else { break };
+            let Some(next) = leaving.get(&rim[at][1].1.0) else { break };
             at = *next;
         }
-        all.push(ring);
+        if !ring.is_empty() {
+            all.push(ring);
+        }
     }
-    all
+    Ok(all)
 }
 
 /// Walls between the rims of two skins; smooth where they turn by less than the crease angle.
-fn add_walls(map: &BasedMap, top: &Placed, under: &Placed, mesh: &mut Mesh, detail: &Detail) {
+fn add_walls(top: &Placed, under: &Placed, mesh: &mut Mesh, detail: &Detail) -> Result<(), TessellateError> {
     let least = cos_degrees(detail.crease_angle);
-    for ring in loops(&top.rim) {
+    for ring in loops(&top.rim)? {
         let sides: Vec<[(Place, PointIndex); 2]> = ring.iter().map(|at| top.rim[*at]).collect();
         let feet: Vec<[PointIndex; 2]> = sides
             .iter()
@@ -266,12 +254,12 @@ fn add_walls(map: &BasedMap, top: &Placed, under: &Placed, mesh: &mut Mesh, deta
             }
         }
     }
-    let _ = map;
+    Ok(())
 }
 
 /// Flat ends of a skin all around a cylinder: its rims lie in planes across the axis.
 fn add_ends(top: &Placed, mesh: &mut Mesh, detail: &Detail) -> Result<(), TessellateError> {
-    for ring in loops(&top.rim) {
+    for ring in loops(&top.rim)? {
         let points: Vec<PointIndex> = ring.iter().map(|at| top.rim[*at][0].1).collect();
         let places: Vec<DVec2> = points
             .iter()
