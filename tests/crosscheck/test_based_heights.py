@@ -218,7 +218,7 @@ def test_the_mesh_is_within_its_tolerance_of_the_skin(kiln: Kiln, name: str, int
         return point + normal * field(s, t)[..., None]
 
     for tolerance in (0.02, 0.002):
-        baked = kiln.bake(spec(on, heights, interpolation, tolerance))
+        baked = kiln.bake(spec(on, heights, interpolation, tolerance), "--measure")
         facts = baked.shape("a")
         assert facts["closed"] == poles
         found = error(baked, skin, (columns - 1, heights.shape[0] - 1), poles=poles)

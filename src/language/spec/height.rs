@@ -17,9 +17,10 @@ use crate::language::value::{Data, Value, show_number};
 
 table! {
     /// Ground by a map of heights, over a flat rectangle in the x, z plane about the origin: columns of the map go to +x,
-    /// its first row lies at -z. With `on` the heights stand on a curved base instead, along its normals. The surface is defined between the samples too, as the `interpolation` of the map says,
-    /// and the mesh lies within the tolerance of it, with few triangles where the ground is flat. Neighbouring maps of the
-    /// same `tolerance` and scale that repeat each other's border samples meet without a crack.
+    /// its first row lies at -z. With `on` the heights stand on a curved base instead, along its normals. The surface is
+    /// defined between the samples too, as the `interpolation` of the map says, and the mesh lies within the tolerance of
+    /// it, with few triangles where the ground is flat. Neighbouring maps of the same `tolerance` and scale that repeat each
+    /// other's border samples meet without a crack.
     "height map" pub HeightMap {
         /// The heights: the name of a map, or a map in place.
         map: MapReference;

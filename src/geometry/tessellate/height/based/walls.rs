@@ -35,7 +35,7 @@ pub(super) fn joined(
 ) -> Result<Mesh, TessellateError> {
     let mut mesh = Mesh::default();
     if let Closing::Base(level) = map.heights.close {
-        check_level(map, &sheets[0], level)?;
+        check_level(map, layers[0], &sheets[0], level)?;
     }
     let top = add_skin(map, layers[0], &sheets[0], &mut mesh, (0, None), detail);
     if let (Some(layer), Some(sheet)) = (layers.get(1), sheets.get(1)) {
@@ -49,7 +49,7 @@ pub(super) fn joined(
 }
 
 /// Refuses heights below the level that closes them; those of corners are set on it where they are near.
-fn check_level(map: &BasedMap, sheet: &Sheet, level: f64) -> Result<(), TessellateError> {
+fn check_level(map: &BasedMap, layer: Layer, sheet: &Sheet, level: f64) -> Result<(), TessellateError> {
     for (steps, point) in sheet.steps.iter().zip(&sheet.points) {
         let [s, t] = map.parts(*steps);
         let (foot, normal) = map.base.stand(s, t);
@@ -57,6 +57,8 @@ fn check_level(map: &BasedMap, sheet: &Sheet, level: f64) -> Result<(), Tessella
         let slack = 1e-12 * point.length();
         if height < level - slack {
             let [x, y] = *steps;
+            // As the field has it, without the rounding of the point.
+            let height = map.height(layer, *steps);
             return Err(TessellateError::BelowLevel { height, base: level, place: DVec2::new(x, y) });
         }
     }
