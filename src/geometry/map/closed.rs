@@ -89,14 +89,10 @@ impl GridField {
                 ((b - a).abs().max((d - c).abs()), (c - a).abs().max((d - b).abs()))
             }
             Some(net) => {
-                let mut most = (0.0_f64, 0.0_f64);
-                for k in 0..4 {
-                    for step in 0..3 {
-                        most.0 = most.0.max(3.0 * (net[k][step + 1] - net[k][step]).abs());
-                        most.1 = most.1.max(3.0 * (net[step + 1][k] - net[step][k]).abs());
-                    }
-                }
-                most
+                let steps = |line: [f64; 4]| (0..3).map(move |k| 3.0 * (line[k + 1] - line[k]).abs());
+                let columns = (0..4).map(|k| net.map(|row| row[k]));
+                let across = net.into_iter().flat_map(steps).fold(0.0, f64::max);
+                (across, columns.flat_map(steps).fold(0.0, f64::max))
             }
         }
     }

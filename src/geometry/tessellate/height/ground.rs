@@ -41,14 +41,14 @@ pub(super) trait Value:
 }
 
 impl Value for f64 {
-    const LOSS: f64 = 0.0;
+    const LOSS: Self = 0.0;
 
     fn size(self) -> f64 {
         self.abs()
     }
 
     /// Eight at a time, so that the machine can work on several at once.
-    fn greatest(values: &[f64], base: f64, slope: f64) -> f64 {
+    fn greatest(values: &[Self], base: Self, slope: Self) -> f64 {
         const LANES: usize = 8;
         const LANE: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
         let mut most = [0.0_f64; LANES];
@@ -60,16 +60,16 @@ impl Value for f64 {
                 let error = (value - (base + (offset + LANE[lane]) * slope)).abs();
                 most[lane] = if error > most[lane] { error } else { most[lane] };
             }
-            offset += LANES as f64;
+            offset += LANES as Self;
         }
-        let mut all = most.into_iter().fold(0.0, f64::max);
+        let mut all = most.into_iter().fold(0.0, Self::max);
         for (lane, value) in rest.iter().enumerate() {
-            all = f64::max(all, (value - (base + (offset + LANE[lane]) * slope)).abs());
+            all = Self::max(all, (value - (base + (offset + LANE[lane]) * slope)).abs());
         }
         all
     }
 
-    fn crest(near: f64, far: f64, bend: f64) -> Option<(f64, f64)> {
+    fn crest(near: Self, far: Self, bend: Self) -> Option<(f64, f64)> {
         let t = 0.5 - (far - near) / (2.0 * bend);
         (t > 0.0 && t < 1.0).then(|| ((near * (1.0 - t) + far * t - bend * t * (1.0 - t)).abs(), t))
     }
