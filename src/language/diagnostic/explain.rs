@@ -478,5 +478,5 @@ examples! {
     BadBase: "Heights stand on one smooth surface with normals: one over parameters u and v, without edges inside, without a twist, and with area everywhere but at poles on its sides.",
         "[shape.a.height-map]\nmap = { noise = {} }\non = { surface = { of = { box = { size = [1, 1, 1] } } } }" => "[shape.a.height-map]\nmap = { noise = {} }\nrange = [0, 0.1]\non = { surface = { of = { revolve = { profile = { line = { from = [1, 0], to = [1, 2] } } } } } }";
     UnequalPole: "A row of a map over a sphere or an ellipsoid is one point at 90 and at -90 degrees of latitude, and so is a side of a surface that ends in a point. There is one height; where the samples of the row differ, their mean stands, and around it the ground is steep.",
-        "[shape.a.height-map]\nmap = { formula = { f = \"= 0.1 * x\" } }\non = { sphere = { radius = 1 } }" => "[shape.a.height-map]\nmap = { formula = { f = \"= 0.1 * x * y * (1 - y)\" } }\non = { sphere = { radius = 1 } }";
+        "[shape.a.height-map]\nmap = { formula = { f = \"= 0.1 * x\" } }\non = { sphere = { radius = 1, latitude = [90, 0] } }" => "[shape.a.height-map]\nmap = { formula = { f = \"= 0.1 * x * y * (1 - y)\" } }\non = { sphere = { radius = 1 } }";
 }
