@@ -1,4 +1,4 @@
-"""Height maps over curved bases: skins by numpy and scipy, the greatest distance of the written mesh from them, volumes."""
+"""Height maps over curved bases: skins by numpy and scipy, how far the written mesh is from them, volumes."""
 
 from __future__ import annotations
 
