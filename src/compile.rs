@@ -200,6 +200,13 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
         RealizeError::Tessellate(TessellateError::BelowLevel { .. }) => {
             (Code::BelowBase, "write a lower `base`, or raise the heights with `range`")
         }
+        RealizeError::Tessellate(TessellateError::TornSeam { .. }) => (
+            Code::TornHeights,
+            "write another `projection`, a map whose borders agree where the texture has a seam, or a `formula` without jumps",
+        ),
+        RealizeError::Tessellate(TessellateError::NoHeight { .. }) => {
+            (Code::FormulaValue, "say with `if` what holds there")
+        }
         RealizeError::Tessellate(TessellateError::CrossesItself { .. }) => (
             Code::DeepHeights,
             "lower the heights with `range`: inward they must stay above the centers of curvature, and what lies opposite must not be reached",

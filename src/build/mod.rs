@@ -14,6 +14,7 @@ mod coons;
 mod course;
 mod curve;
 mod deform;
+mod displace;
 mod extrude;
 mod field;
 mod formula;

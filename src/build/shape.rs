@@ -131,6 +131,7 @@ impl Builder<'_> {
             Kind::Twist(twist) => self.twist(name, twist).map(here),
             Kind::Bend(bend) => self.bend(name, bend).map(here),
             Kind::Along(along) => self.along(name, along).map(here),
+            Kind::Displace(displace) => self.displace(name, displace).map(here),
             Kind::Copy(copy) => {
                 let of = self.shape_of(name, 0, &copy.of)?;
                 Some(here(Recipe::Assembly(vec![(of, DAffine3::IDENTITY)])))

@@ -5,6 +5,7 @@
 //! so there is no cycle. Lengths are in the document's unit; [`Model::frame`] turns and scales them to glTF.
 
 mod deform;
+mod displace;
 mod material;
 mod motion;
 mod shape;
@@ -12,6 +13,7 @@ mod solid;
 mod subdivide;
 
 pub use deform::{AxialBending, Bending, PathBending};
+pub use displace::{Displacement, Heights, Projection};
 pub use material::{
     AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, Texture, Wrap,
 };

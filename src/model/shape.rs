@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec2, DVec3};
 
-use super::{Bending, MaterialHandle, SolidRecipe, SubdivisionRecipe};
+use super::{Bending, Displacement, MaterialHandle, SolidRecipe, SubdivisionRecipe};
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::tessellate::{
@@ -84,6 +84,8 @@ pub enum Recipe {
         /// The map.
         by: Bending,
     },
+    /// Another shape moved along its normals.
+    Displaced(Displacement),
     /// Closed shapes as solids.
     Solid(SolidRecipe),
     /// A cage refined toward a smooth surface.

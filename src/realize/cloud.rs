@@ -49,9 +49,11 @@ pub(super) fn cloud(recipe: &Recipe) -> Vec<DVec3> {
             faces(half).into_iter().map(|place| place + bounds.center()).collect()
         }
         Recipe::Wire(curves) => curves.iter().flat_map(points).collect(),
-        Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) | Recipe::Subdivided(_) => {
-            Vec::new()
-        }
+        Recipe::Assembly(_)
+        | Recipe::Deformed { .. }
+        | Recipe::Displaced(_)
+        | Recipe::Solid(_)
+        | Recipe::Subdivided(_) => Vec::new(),
     }
 }
 

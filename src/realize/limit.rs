@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::RealizeError;
 use crate::geometry::mesh::{Mesh, Vertex, Wire, WirePoint};
-use crate::model::{Limits, Model, Recipe};
+use crate::model::{Displacement, Limits, Model, Recipe};
 
 /// What a mesh takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,7 +85,7 @@ pub(super) fn least_triangles(model: &Model) -> Vec<u64> {
             Recipe::Assembly(parts) => {
                 parts.iter().fold(0, |sum: u64, (part, _)| sum.saturating_add(all[part.0 as usize]))
             }
-            Recipe::Deformed { of, .. } => all[of.0 as usize],
+            Recipe::Deformed { of, .. } | Recipe::Displaced(Displacement { of, .. }) => all[of.0 as usize],
             Recipe::Solid(_) | Recipe::Subdivided(_) => 1,
             Recipe::Cuboid { .. } => 12,
             Recipe::RoundedBox(_) => 44,

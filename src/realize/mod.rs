@@ -7,6 +7,7 @@
 mod bent;
 mod cloud;
 mod deformation;
+mod displace;
 mod facets;
 mod height;
 mod leaning;

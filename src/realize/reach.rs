@@ -41,6 +41,13 @@ impl Search<'_> {
             return moved(map, of_box(&self.extents.bounds(handle), local));
         }
         self.left -= 1;
+        if let Recipe::Displaced(recipe) = &shape.recipe {
+            let growth = super::displace::growth(self.model, self.extents, recipe);
+            let map = *map * shape.options.placement;
+            let (low, high) = self.shape(recipe.of, &map, direction);
+            let growth = growth * (map.matrix3.transpose() * direction).length();
+            return (low - growth, high + growth);
+        }
         let map = *map * shape.options.placement;
         // On the points of the recipe the map and the direction are one linear function.
         let local = map.matrix3.transpose() * direction;
@@ -133,6 +140,9 @@ impl Gathering<'_> {
                 }
             }
             Recipe::Subdivided(refined) => self.shape(refined.cage, &placed),
+            Recipe::Displaced(_) => {
+                self.all.extend(box_lattice(&self.extents.bounds(handle)).into_iter().map(map));
+            }
             recipe => self.all.extend(cloud(recipe).into_iter().map(placed)),
         }
     }

@@ -16,7 +16,9 @@ use crate::geometry::tessellate::{
     based_map, cuboid, deform, extrude, field_surface, geodesic, height_map, patchwork, plane, quadric,
     revolve, rounded_box, sheet, sweep, trimmed, two_sided, wire,
 };
-use crate::model::{Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing, UvMode};
+use crate::model::{
+    Displacement, Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing, UvMode,
+};
 
 /// A shape as triangles in its own space or its user's.
 #[derive(Clone, Debug)]
@@ -111,6 +113,9 @@ impl<'a> Maker<'a> {
             Recipe::Deformed { of, .. } => {
                 self.deformed((handle, *of), wanted.within(&shape.options.placement), next_source)?
             }
+            Recipe::Displaced(recipe) => {
+                self.displaced(handle, recipe, wanted.within(&shape.options.placement), next_source)?
+            }
             Recipe::Solid(recipe) => {
                 self.solid(handle, recipe, wanted.within(&shape.options.placement), next_source)?
             }
@@ -204,9 +209,11 @@ impl<'a> Maker<'a> {
                 });
                 return self.finished(shape, made.map_err(|error| self.in_terms_of_limits(error))?);
             }
-            Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) | Recipe::Subdivided(_) => {
-                Ok(Tessellation { mesh: Mesh::default(), deviation: Deviation::NONE })
-            }
+            Recipe::Assembly(_)
+            | Recipe::Deformed { .. }
+            | Recipe::Displaced(_)
+            | Recipe::Solid(_)
+            | Recipe::Subdivided(_) => Ok(Tessellation { mesh: Mesh::default(), deviation: Deviation::NONE }),
         };
         let made = made.map_err(|error| self.in_terms_of_limits(error))?;
         self.finished(shape, surface(made))
@@ -500,7 +507,7 @@ fn shows_texture(model: &Model, handle: ShapeHandle) -> bool {
     for shape in &model.shapes[..=handle.0 as usize] {
         let of_parts = match &shape.recipe {
             Recipe::Assembly(parts) => parts.iter().any(|(part, _)| shows[part.0 as usize]),
-            Recipe::Deformed { of, .. } => shows[of.0 as usize],
+            Recipe::Deformed { of, .. } | Recipe::Displaced(Displacement { of, .. }) => shows[of.0 as usize],
             Recipe::Subdivided(refined) => shows[refined.cage.0 as usize],
             Recipe::Solid(solid) => solid.parts.iter().any(|part| shows[part.0 as usize]),
             Recipe::Polygons { materials, .. } => materials.iter().flatten().any(textured),

@@ -37,7 +37,7 @@ pub(super) fn source_count(recipe: &Recipe) -> u32 {
         | Recipe::Geodesic(_)
         | Recipe::Plane(_)
         | Recipe::Sheet(_) => 1,
-        Recipe::Subdivided(_) => 1,
+        Recipe::Subdivided(_) | Recipe::Displaced(_) => 1,
         Recipe::Wire(curves) => mesh::index(curves.len()),
         Recipe::Quadric(_) => ClippedQuadric::SOURCES,
         Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) => 0,
@@ -161,7 +161,9 @@ impl Collector<'_> {
                 }));
             }
             Recipe::Solid(solid) => self.collect_solid(solid, &map, bends, all),
-            Recipe::Subdivided(_) => all.push(Source { kind: Kind::Derived, map, back: map.inverse() }),
+            Recipe::Subdivided(_) | Recipe::Displaced(_) => {
+                all.push(Source { kind: Kind::Derived, map, back: map.inverse() });
+            }
             recipe => {
                 let kinds = kinds(recipe, bends).into_iter();
                 all.extend(kinds.map(|kind| Source { kind, map, back: map.inverse() }));
@@ -267,9 +269,11 @@ fn kinds(recipe: &Recipe, bends: bool) -> Vec<Kind> {
         }
         Recipe::Implicit { surface, .. } => vec![Kind::Implicit(Arc::new(surface.as_ref().clone()))],
         Recipe::Wire(curves) => curves.iter().map(|curve| Kind::Line(curve.clone())).collect(),
-        Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) | Recipe::Subdivided(_) => {
-            Vec::new()
-        }
+        Recipe::Assembly(_)
+        | Recipe::Deformed { .. }
+        | Recipe::Displaced(_)
+        | Recipe::Solid(_)
+        | Recipe::Subdivided(_) => Vec::new(),
     }
 }
 
@@ -463,6 +467,10 @@ pub(super) fn extents(model: &Model) -> Extents {
                 own
             }
             Recipe::Solid(solid) => of_solid(&all, solid),
+            Recipe::Displaced(recipe) => {
+                let (own, more) = (all.bounds(recipe.of), super::displace::growth(model, &all, recipe));
+                Bounds { min: own.min - more, max: own.max + more }
+            }
             Recipe::Subdivided(refined) => of_cage(&all.bounds(refined.cage), refined.scheme),
             recipe => extent(recipe),
         };
@@ -556,9 +564,11 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
         Recipe::Quadric(shape) => shape.bounds(),
         Recipe::Implicit { surface, .. } => surface.within,
         Recipe::Trimmed(shape) => shape.bounds(),
-        Recipe::Assembly(_) | Recipe::Deformed { .. } | Recipe::Solid(_) | Recipe::Subdivided(_) => {
-            Bounds::EMPTY
-        }
+        Recipe::Assembly(_)
+        | Recipe::Deformed { .. }
+        | Recipe::Displaced(_)
+        | Recipe::Solid(_)
+        | Recipe::Subdivided(_) => Bounds::EMPTY,
     }
 }
 

@@ -11,6 +11,7 @@ mod cap;
 mod cuboid;
 mod deform;
 mod discretize;
+mod displace;
 mod extrude;
 mod field;
 mod geodesic;
@@ -34,6 +35,7 @@ pub use bevel::{Collision, EdgeProfile};
 pub use cuboid::cuboid;
 pub use deform::{DeformError, Deformed, deform};
 pub use discretize::{Density, Station, arc_lengths, discretize};
+pub use displace::{Heights, displace};
 pub use extrude::{Extrusion, extrude};
 pub use field::{FieldSurface, field_surface};
 pub use geodesic::{Geodesic, geodesic};
@@ -173,6 +175,20 @@ pub enum TessellateError {
         base: f64,
         /// Column and row of that height, counted from 0.
         place: DVec2,
+    },
+    /// Heights along normals that are different on both sides of a line, or jump.
+    #[error("its height jumps by {gap} near {}", told(*place))]
+    TornSeam {
+        /// Where.
+        place: DVec3,
+        /// By how much.
+        gap: f64,
+    },
+    /// A height that is no number.
+    #[error("its height has no value at {}", told(*place))]
+    NoHeight {
+        /// Where.
+        place: DVec3,
     },
     /// A surface moved along its normals so far that it crosses itself.
     #[error("its surface runs through itself near {}", told(*place))]

@@ -388,6 +388,8 @@ codes! {
     BadBase = "K0981";
     /// samples of a row that is one point differ
     UnequalPole = "K0982";
+    /// heights differ on both sides of a seam, or jump
+    TornHeights = "K0983";
 }
 
 impl std::fmt::Display for Code {

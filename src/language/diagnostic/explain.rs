@@ -479,4 +479,6 @@ examples! {
         "[shape.a.height-map]\nmap = { noise = {} }\non = { surface = { of = { box = { size = [1, 1, 1] } } } }" => "[shape.a.height-map]\nmap = { noise = {} }\nrange = [0, 0.1]\non = { surface = { of = { revolve = { profile = { line = { from = [1, 0], to = [1, 2] } } } } } }";
     UnequalPole: "A row of a map over a sphere or an ellipsoid is one point at 90 and at -90 degrees of latitude, and so is a side of a surface that ends in a point. There is one height; where the samples of the row differ, their mean stands, and around it the ground is steep.",
         "[shape.a.height-map]\nmap = { formula = { f = \"= 0.1 * x\" } }\non = { sphere = { radius = 1, latitude = [90, 0] } }" => "[shape.a.height-map]\nmap = { formula = { f = \"= 0.1 * x * y * (1 - y)\" } }\non = { sphere = { radius = 1 } }";
+    TornHeights: "A shape that is moved along its normals by heights would tear: where its texture has a seam, the map has other heights on the one side than on the other, or the height jumps in one place. Projections that depend on the place alone have no seams.",
+        "[shape.a.displace]\nof = { box = { size = [1, 1, 1] } }\nmap = { formula = { f = \"= 0.1 * x\" } }" => "[shape.a.displace]\nof = { box = { size = [1, 1, 1] } }\nmap = { formula = { f = \"= 0.1 * x\" } }\nprojection = \"y\"";
 }

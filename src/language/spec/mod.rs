@@ -13,6 +13,7 @@ mod coons;
 mod cubic;
 mod curve;
 mod deform;
+mod displace;
 mod document;
 mod field;
 mod formula;
@@ -84,6 +85,7 @@ pub use coons::{Coons, CoonsBlend, CoonsSide, CoonsSideFields, CoonsTwist, Cross
 pub use cubic::{Basis, BetaSpline, Border, Cubic};
 pub use curve::{Circle, Curve, Ellipse, Helix, Line, Polyline, Reverse, Transform};
 pub use deform::{Along, Bend, CoordinateAxis, Taper, Twist};
+pub use displace::{Displace, DisplaceProjection};
 pub use document::{Asset, Definition, Spec, Unit};
 pub use field::{
     BumpField, FallOff, Field, FieldDefinition, FieldFormula, FieldJoin, FieldOptions, FieldQuadric,

@@ -137,6 +137,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
             "twist",
             "bend",
             "along",
+            "displace",
             "copy",
             "mirror",
             "plane",

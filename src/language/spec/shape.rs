@@ -9,6 +9,7 @@ use crate::language::spec::combine::{Array, Copy, Group, Mirror};
 use crate::language::spec::construct::{choices, kinds, table};
 use crate::language::spec::coons::{Coons, Gordon};
 use crate::language::spec::deform::{Along, Bend, Taper, Twist};
+use crate::language::spec::displace::Displace;
 use crate::language::spec::field::ImplicitShape;
 use crate::language::spec::height::{HeightMap, Split};
 use crate::language::spec::import::Import;
@@ -181,6 +182,8 @@ kinds! {
         Bend(Bend) = "bend";
         /// Another shape, laid along a curve.
         Along(Along) = "along";
+        /// Another shape, its points moved along their normals.
+        Displace(Displace) = "displace";
         /// Another shape again.
         Copy(Copy) = "copy";
         /// Another shape and its mirror image.

@@ -28,7 +28,7 @@ use crate::geometry::mesh::{Mesh, Wire};
 use crate::geometry::surface::Deformation;
 use images::{Images, Judged};
 use levels::Levels;
-use split::Splitter;
+pub(super) use split::{Part, Splitter, key};
 
 /// Why a mesh was not deformed.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -188,7 +188,7 @@ impl<'a> Work<'a> {
                 return Err(TessellateError::TooMany { needed, limit: triangle_limit }.into());
             }
             self.images.follow(&self.splitter.mesh)?;
-            let fresh = |triangle, part: &split::Part| match part.whole {
+            let fresh = |triangle, part: &Part| match part.whole {
                 true => self.judged[part.of as usize],
                 false => self.images.judge(&self.splitter, triangle, tolerance),
             };

@@ -5,23 +5,25 @@ use std::collections::{HashMap, HashSet};
 use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex, index};
 
 /// A mesh that is split, and its lines.
-pub(super) struct Splitter<'a> {
-    pub(super) mesh: Mesh,
+pub(in crate::geometry::tessellate) struct Splitter<'a> {
+    pub(in crate::geometry::tessellate) mesh: Mesh,
     /// For each source the parameters after which u and v come round again.
     periods: &'a [(f64, f64)],
     lines: HashSet<(u32, u32)>,
+    /// For each point that was made, in order: its neighbors on the side, and at which part of the way from the first.
+    pub(in crate::geometry::tessellate) parents: Vec<(u32, u32, f64)>,
 }
 
 /// What a triangle is after a round.
-pub(super) struct Part {
+pub(in crate::geometry::tessellate) struct Part {
     /// Whether it is as it was.
-    pub(super) whole: bool,
+    pub(in crate::geometry::tessellate) whole: bool,
     /// The triangle it comes from.
-    pub(super) of: u32,
+    pub(in crate::geometry::tessellate) of: u32,
 }
 
 /// Two points in order.
-pub(super) fn key(a: u32, b: u32) -> (u32, u32) {
+pub(in crate::geometry::tessellate) fn key(a: u32, b: u32) -> (u32, u32) {
     (a.min(b), a.max(b))
 }
 
@@ -33,8 +35,12 @@ struct Round<'a> {
 }
 
 impl<'a> Splitter<'a> {
-    pub(super) fn new(mesh: Mesh, lines: HashSet<(u32, u32)>, periods: &'a [(f64, f64)]) -> Self {
-        Self { mesh, periods, lines }
+    pub(in crate::geometry::tessellate) fn new(
+        mesh: Mesh,
+        lines: HashSet<(u32, u32)>,
+        periods: &'a [(f64, f64)],
+    ) -> Self {
+        Self { mesh, periods, lines, parents: Vec::new() }
     }
 
     /// Whether a side is a border or a hard edge.
@@ -44,7 +50,7 @@ impl<'a> Splitter<'a> {
 
     /// Splits every triangle with a marked side; a mark says at which part of the way from the lesser point. For each
     /// triangle that there is then: where it comes from.
-    pub(super) fn split(&mut self, marks: &HashMap<(u32, u32), f64>) -> Vec<Part> {
+    pub(in crate::geometry::tessellate) fn split(&mut self, marks: &HashMap<(u32, u32), f64>) -> Vec<Part> {
         let mut round = Round { marks, points: HashMap::new(), vertices: HashMap::new() };
         let triangles = std::mem::take(&mut self.mesh.triangles);
         let runs = std::mem::take(&mut self.mesh.runs);
@@ -114,6 +120,7 @@ impl<'a> Splitter<'a> {
         let point = *round.points.entry(side).or_insert_with(|| {
             let ends = (self.mesh.points[side.0 as usize], self.mesh.points[side.1 as usize]);
             self.mesh.points.push(ends.0.lerp(ends.1, part));
+            self.parents.push((side.0, side.1, part));
             index(self.mesh.points.len() - 1)
         });
         self.mesh.vertices.push(between((&one, &other), part, PointIndex(point), self.periods));
