@@ -67,6 +67,8 @@ pub fn compile(document: &Document, files: &dyn Files, options: &Options) -> Res
     warnings.extend(loose.iter().map(|one| motion::loose(&built, one)));
     warnings.extend(beyond_tolerance(&scene, &shapes, &built));
     optimize::run(&mut scene);
+    realize::normal_maps(&built.model, &mut scene, &shapes)
+        .map_err(|errors| fail(refusals(&built, errors)))?;
     let checked = scene::check::check(&scene).map_err(|error| fail(vec![unwritable(&error, &built)]))?;
     let file = file_name(options);
     let written = gltf::write(checked, options.measure);
@@ -229,6 +231,14 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
         }
         RealizeError::Solid { .. } => (Code::NoSolid, "see the parts of it"),
         RealizeError::Subdivide { .. } => (Code::BadCage, "see its cage"),
+        RealizeError::NormalMapUnused => (
+            Code::NormalMap,
+            "let a node show the shape by itself, with its own material, or leave `bake-normal-map` out",
+        ),
+        RealizeError::NormalMapPlace { .. } => (
+            Code::NormalMap,
+            "displace a shape whose texture coordinates cover the picture once, as those of `sphere`, `revolve`, `plane` and surfaces do",
+        ),
         RealizeError::Polygons(_) => (Code::BadMesh, "check the indices of the faces"),
     };
     Diagnostic::error(code, format!("shape `{name}` cannot be made: {error}"))

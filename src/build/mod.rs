@@ -30,6 +30,7 @@ mod material;
 mod motion_file;
 mod moving;
 mod node;
+mod normal_map;
 mod operation;
 mod overlap;
 mod parametric;
@@ -142,6 +143,7 @@ impl<'a> Builder<'a> {
             tolerance: spec.tolerance.map(|tolerance| tolerance.value),
             shapes: Vec::new(),
             materials: Vec::new(),
+            normal_maps: Vec::new(),
             images: Vec::new(),
             nodes: Vec::new(),
             skeletons: Vec::new(),

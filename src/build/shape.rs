@@ -46,10 +46,12 @@ impl Builder<'_> {
         let faces = std::mem::take(&mut self.face_places);
         let mut options = options?;
         options.placement *= place;
+        let handle = ShapeHandle(mesh::index(self.model.shapes.len()));
+        self.normal_map(name, handle, definition, &options)?;
         self.model.shapes.push(Shape { name: name.to_owned(), recipe, options });
         self.places.push(span);
         self.faces.push(faces);
-        Some(ShapeHandle(mesh::index(self.model.shapes.len()) - 1))
+        Some(handle)
     }
 
     pub(super) fn options(&mut self, written: &spec::ShapeOptions) -> Option<ShapeOptions> {

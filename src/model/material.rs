@@ -115,3 +115,16 @@ pub enum ImageKind {
     /// JPEG.
     Jpeg,
 }
+
+/// A normal map of a shape's heights. Its image is empty until it is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NormalMap {
+    /// The shape.
+    pub shape: super::ShapeHandle,
+    /// The material that shows it: the shape's own, with the map.
+    pub material: MaterialHandle,
+    /// Name of the image.
+    pub name: String,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+}

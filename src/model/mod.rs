@@ -14,6 +14,7 @@ mod subdivide;
 
 pub use deform::{AxialBending, Bending, PathBending};
 pub use displace::{Displacement, Heights, Projection};
+pub use material::NormalMap;
 pub use material::{
     AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, Texture, Wrap,
 };
@@ -120,6 +121,8 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// Images that textures show.
     pub images: Vec<Image>,
+    /// Normal maps that are drawn when the meshes are known.
+    pub normal_maps: Vec<NormalMap>,
     /// Nodes; parents stand anywhere.
     pub nodes: Vec<Node>,
     /// Skeletons.

@@ -6,8 +6,9 @@ use super::RealizeError;
 use super::limit;
 use super::reach::bent;
 use super::shape::{Inherited, Made, Maker, cost, flatten};
-use crate::geometry::tessellate::{Deviation, Heights, TessellateError, displace};
-use crate::model::{Displacement, ShapeHandle, Smoothing};
+use crate::geometry::number::single_rounding;
+use crate::geometry::tessellate::{Deviation, Heights, TessellateError, displace, normal_picture};
+use crate::model::{Displacement, NormalMap, ShapeHandle, Smoothing};
 
 impl Maker<'_> {
     /// A displaced shape in its own space. A quarter of the tolerance is for the shape that is moved.
@@ -20,15 +21,8 @@ impl Maker<'_> {
     ) -> Result<Made, RealizeError> {
         let shape = self.model.shape(handle);
         let bounds = self.extents.bounds(recipe.of);
-        let tolerance = inherited.tolerance.unwrap_or_else(|| bounds.diagonal() / 2000.0);
-        let share = Inherited { tolerance: Some(tolerance / 4.0), uv: true, ..inherited };
-        let mut made = self.part(recipe.of, share, &mut 0)?;
-        let mut periods = Vec::new();
-        super::bent::periods(self.model, recipe.of, &mut periods);
-        let tolerance = tolerance * self.coarser;
-        let aim = (tolerance - inherited.rounding).max(tolerance / 2.0);
+        let Subject { mut made, periods, tolerance, left } = self.subject(recipe, inherited)?;
         let before = made.deviation.bound;
-        let left = (aim - before).max(aim / 4.0);
         let height = |place: DVec3, uv: DVec2| recipe.heights.at(&bounds, place, uv);
         let detail = |places: [DVec3; 2], uvs: [DVec2; 2]| recipe.heights.detail(&bounds, places, uvs);
         let heights = Heights { height: &height, detail: &detail };
@@ -47,6 +41,52 @@ impl Maker<'_> {
         let made = if shape.options.smoothing == Smoothing::Flat { flatten(made) } else { made };
         cost(&made).check(&self.model.limits)?;
         Ok(made)
+    }
+}
+
+/// A shape before it is moved.
+struct Subject {
+    made: Made,
+    periods: Vec<(f64, f64)>,
+    tolerance: f64,
+    /// What is left of the tolerance for moving it.
+    left: f64,
+}
+
+impl Maker<'_> {
+    /// The shape that is moved, within a quarter of the tolerance.
+    fn subject(&self, recipe: &Displacement, inherited: Inherited) -> Result<Subject, RealizeError> {
+        let bounds = self.extents.bounds(recipe.of);
+        let tolerance = inherited.tolerance.unwrap_or_else(|| bounds.diagonal() / 2000.0);
+        let share = Inherited { tolerance: Some(tolerance / 4.0), uv: true, ..inherited };
+        let made = self.part(recipe.of, share, &mut 0)?;
+        let mut periods = Vec::new();
+        super::bent::periods(self.model, recipe.of, &mut periods);
+        let tolerance = tolerance * self.coarser;
+        let aim = (tolerance - inherited.rounding).max(tolerance / 2.0);
+        let left = (aim - made.deviation.bound).max(aim / 4.0);
+        Ok(Subject { made, periods, tolerance, left })
+    }
+
+    /// The normals of a displaced shape for the texels of its normal map, in its own space.
+    pub(super) fn normals_of(
+        &self,
+        map: &NormalMap,
+        recipe: &Displacement,
+    ) -> Result<Vec<Option<DVec3>>, RealizeError> {
+        let shape = self.model.shape(map.shape);
+        let wanted = Inherited {
+            tolerance: shape.options.tolerance.or(self.model.tolerance),
+            rounding: single_rounding(self.extents.bounds(map.shape).reach()),
+            uv: true,
+        };
+        let Subject { made, .. } = self.subject(recipe, wanted.within(&shape.options.placement))?;
+        let bounds = self.extents.bounds(recipe.of);
+        let height = |place: DVec3, uv: DVec2| recipe.heights.at(&bounds, place, uv);
+        let detail = |places: [DVec3; 2], uvs: [DVec2; 2]| recipe.heights.detail(&bounds, places, uvs);
+        let heights = Heights { height: &height, detail: &detail };
+        normal_picture(&made.mesh, &heights, map.size)
+            .map_err(|fault| RealizeError::NormalMapPlace { place: fault.place, overlap: fault.overlap })
     }
 }
 

@@ -15,6 +15,7 @@ mod limit;
 mod motion;
 mod nearest;
 mod node;
+mod normal_map;
 mod reach;
 mod shape;
 mod solid;
@@ -22,6 +23,7 @@ mod source;
 mod subdivide;
 mod swept;
 
+pub use normal_map::normal_maps;
 pub use source::{Source, Sources, Window, sources};
 
 use glam::DVec3;
@@ -92,6 +94,19 @@ pub enum RealizeError {
     SkinnedWire {
         /// Index of the skin.
         skin: usize,
+    },
+    /// A normal map that no written mesh shows.
+    #[error(
+        "its normal map is not shown: the shape is part of another one, or nodes give it other materials"
+    )]
+    NormalMapUnused,
+    /// Texture coordinates under which a normal map cannot be drawn.
+    #[error("its normal map cannot be drawn: near u = {}, v = {} texture coordinates {}", place.x, place.y, if *overlap { "cover one place several times" } else { "lie outside of the picture" })]
+    NormalMapPlace {
+        /// Texture coordinates.
+        place: glam::DVec2,
+        /// Whether triangles overlap there; otherwise they leave the picture.
+        overlap: bool,
     },
     /// More vertices or bytes than allowed.
     #[error("this would make at least {needed} {what}, and the limit is {limit}")]

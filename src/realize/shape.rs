@@ -135,6 +135,9 @@ impl<'a> Maker<'a> {
             }
         }
         place(&mut made, &shape.options.placement);
+        if let Some(map) = self.model.normal_maps.iter().find(|map| map.shape == handle) {
+            show_normals(&mut made, map.material, &shape.recipe);
+        }
         if let Some(material) = shape.options.material {
             // A part keeps its own material; what has none takes the whole's.
             made.materials.iter_mut().for_each(|slot| *slot = slot.or(Some(material)));
@@ -401,6 +404,27 @@ fn split_by_element(made: &mut Made, field: &AnyField, materials: &[Option<Mater
     made.materials = materials.to_vec();
 }
 
+/// Gives what shows a normal map its material: all that has none, or of a height map the upper side.
+fn show_normals(made: &mut Made, material: MaterialHandle, recipe: &Recipe) {
+    if matches!(recipe, Recipe::Displaced(_)) {
+        made.materials.iter_mut().for_each(|slot| *slot = slot.or(Some(material)));
+        return;
+    }
+    let mesh = &mut made.mesh;
+    let is_top = |corners: &[VertexIndex; 3]| {
+        corners.iter().all(|corner| mesh.vertices[corner.subscript()].anchor.source == 0)
+    };
+    let (top, rest): (Vec<_>, Vec<_>) = mesh.triangles.iter().copied().partition(is_top);
+    let end = mesh::index(top.len());
+    mesh.triangles = [top, rest].concat();
+    let all = mesh::index(mesh.triangles.len());
+    mesh.runs = vec![Run { origin: 0, end }];
+    if all > end {
+        mesh.runs.push(Run { origin: 1, end: all });
+    }
+    made.materials = vec![Some(material), None];
+}
+
 /// Whether the document fixes how finely a shape is cut.
 fn has_fixed_grid(shape: &Shape) -> bool {
     let divided = matches!(&shape.recipe, Recipe::Geodesic(ball) if ball.frequency.is_some());
@@ -513,7 +537,8 @@ fn shows_texture(model: &Model, handle: ShapeHandle) -> bool {
             Recipe::Polygons { materials, .. } => materials.iter().flatten().any(textured),
             _ => false,
         };
-        shows.push(of_parts || shape.options.material.iter().any(textured));
+        let drawn = model.normal_maps.iter().any(|map| map.shape.0 as usize == shows.len());
+        shows.push(of_parts || drawn || shape.options.material.iter().any(textured));
     }
     shows.pop().unwrap_or(false)
 }

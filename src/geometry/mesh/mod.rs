@@ -15,6 +15,7 @@ mod normals;
 pub mod platonic;
 pub mod polygon;
 pub mod polygon_facts;
+pub mod texels;
 pub mod topology;
 mod transform;
 pub mod triangulate;

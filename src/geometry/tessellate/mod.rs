@@ -35,7 +35,7 @@ pub use bevel::{Collision, EdgeProfile};
 pub use cuboid::cuboid;
 pub use deform::{DeformError, Deformed, deform};
 pub use discretize::{Density, Station, arc_lengths, discretize};
-pub use displace::{Heights, displace};
+pub use displace::{Heights, PictureFault, displace, normal_picture};
 pub use extrude::{Extrusion, extrude};
 pub use field::{FieldSurface, field_surface};
 pub use geodesic::{Geodesic, geodesic};

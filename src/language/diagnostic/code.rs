@@ -390,6 +390,8 @@ codes! {
     UnequalPole = "K0982";
     /// heights differ on both sides of a seam, or jump
     TornHeights = "K0983";
+    /// a normal map cannot be drawn
+    NormalMap = "K0984";
 }
 
 impl std::fmt::Display for Code {

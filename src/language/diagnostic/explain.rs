@@ -481,4 +481,6 @@ examples! {
         "[shape.a.height-map]\nmap = { formula = { f = \"= 0.1 * x\" } }\non = { sphere = { radius = 1, latitude = [90, 0] } }" => "[shape.a.height-map]\nmap = { formula = { f = \"= 0.1 * x * y * (1 - y)\" } }\non = { sphere = { radius = 1 } }";
     TornHeights: "A shape that is moved along its normals by heights would tear: where its texture has a seam, the map has other heights on the one side than on the other, or the height jumps in one place. Projections that depend on the place alone have no seams.",
         "[shape.a.displace]\nof = { box = { size = [1, 1, 1] } }\nmap = { formula = { f = \"= 0.1 * x\" } }" => "[shape.a.displace]\nof = { box = { size = [1, 1, 1] } }\nmap = { formula = { f = \"= 0.1 * x\" } }\nprojection = \"y\"";
+    NormalMap: "The normals of a shape at full resolution are drawn into a picture over its texture coordinates, so these must lie between 0 and 1 and cover no place twice; and the shape must be shown by itself, with its own material.",
+        "[shape.a.displace]\nof = { box = { size = [1, 1, 1] } }\nformula = \"= 0.01 * sin(x * 720)\"\nbake-normal-map = 64" => "[shape.a.displace]\nof = { plane = { size = [1, 1] } }\nformula = \"= 0.01 * sin(x * 720)\"\nbake-normal-map = 64";
 }

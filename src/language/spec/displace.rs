@@ -4,8 +4,10 @@ use glam::DVec2;
 
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
+use crate::language::spec::check::Check;
 use crate::language::spec::construct::{choices, table};
 use crate::language::spec::formula::Formula;
+use crate::language::spec::point::Segments;
 use crate::language::spec::reader::Reader;
 use crate::language::spec::reference::{MapReference, ShapeReference};
 use crate::language::spec::spanned::Sp;
@@ -26,6 +28,10 @@ table! {
         range: Sp<DVec2> = DVec2::new(0.0, 1.0);
         /// How the map lies on the shape.
         projection: Sp<DisplaceProjection> = DisplaceProjection::Texture;
+        /// Draws the normals of the heights at full resolution into a normal map of the shape's material: its width and height
+        /// in pixels, or one number for both. Few triangles then look like many: write a coarser `tolerance` with it. Its
+        /// texture coordinates must lie between 0 and 1 and cover no place twice.
+        bake_normal_map: Option<Sp<Segments>> => Check::within(1.0, 16384.0);
     }
     checked check
 }

@@ -8,6 +8,7 @@ use crate::language::source::Span;
 use crate::language::spec::check::Check;
 use crate::language::spec::construct::{choices, table};
 use crate::language::spec::height_base::{HeightBase, Projection};
+use crate::language::spec::point::Segments;
 use crate::language::spec::reader::{Read, Reader};
 use crate::language::spec::reference::MapReference;
 use crate::language::spec::scalar::finite;
@@ -41,6 +42,10 @@ table! {
         base: Option<Sp<f64>>;
         /// With `close = "thickness"`: how far the lower sheet lies below the upper one, measured along the heights.
         depth: Option<Sp<f64>> => Check::above(0.0);
+        /// Draws the normals of the heights at full resolution into a normal map of the shape's material: its width and height
+        /// in pixels, or one number for both. Few triangles then look like many: write a coarser `tolerance` with it. It is
+        /// for the upper side, where the shape is shown by itself.
+        bake_normal_map: Option<Sp<Segments>> => Check::within(1.0, 16384.0);
         /// What is kept of the ground: the places where all of these hold. It ends along the exact lines where the maps
         /// pass their thresholds, in as many parts and with as many holes as that gives, and walls follow them when it is
         /// closed. Masks that keep opposite sides of one threshold meet along the same points. Samples at the threshold

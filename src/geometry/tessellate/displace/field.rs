@@ -45,12 +45,18 @@ impl<'a> Facet<'a> {
     }
 
     /// The moved surface at barycentric coordinates.
-    pub(super) fn at(&self, weights: [f64; 3]) -> DVec3 {
+    fn at(&self, weights: [f64; 3]) -> DVec3 {
+        let (place, height, way) = self.parts(weights);
+        place + way * height
+    }
+
+    /// The place before it is moved, its height and its way.
+    fn parts(&self, weights: [f64; 3]) -> (DVec3, f64, DVec3) {
         let sum = |of: [DVec3; 3]| of[0] * weights[0] + of[1] * weights[1] + of[2] * weights[2];
         let uv = self.uvs[0] * weights[0] + self.uvs[1] * weights[1] + self.uvs[2] * weights[2];
         let (place, way) = (sum(self.places), sum(self.ways));
         let way = if self.smooth { way.normalize_or(self.ways[0]) } else { way };
-        place + way * (self.heights.height)(place, uv)
+        (place, (self.heights.height)(place, uv), way)
     }
 
     fn chord(&self, weights: [f64; 3]) -> DVec3 {
@@ -99,22 +105,32 @@ impl<'a> Facet<'a> {
         Verdict { split, error, jumps: error > aim && longest < JUMP * aim }
     }
 
-    /// The normal of the moved surface at a corner, from inside of the triangle, and the angle there.
-    pub(super) fn normal(&self, corner: usize) -> Option<(DVec3, f64)> {
-        /// Part of the triangle over which differences are taken.
+    /// The normal of the moved surface at barycentric coordinates. Where the mesh is smooth it is taken for the round
+    /// surface that its normals speak of, not for the flat triangle.
+    pub(super) fn normal_at(&self, weights: [f64; 3]) -> Option<DVec3> {
+        /// Part of the way to a corner over which differences are taken.
         const STEP: f64 = 1e-4;
-        let toward = |other: usize| {
-            let mut weights = [0.0; 3];
-            weights[corner] = 1.0 - STEP;
-            weights[other] = STEP;
-            self.at(weights)
+        // Toward the two corners that are furthest.
+        let nearest = (0..3).max_by(|a, b| weights[*a].total_cmp(&weights[*b]))?;
+        let (next, last) = ((nearest + 1) % 3, (nearest + 2) % 3);
+        let (place, height, way) = self.parts(weights);
+        let toward = |corner: usize| {
+            let mut there = weights.map(|weight| weight * (1.0 - STEP));
+            there[corner] += STEP;
+            let (moved, other, turned) = self.parts(there);
+            let step = moved - place;
+            let step = if self.smooth { step - way * step.dot(way) } else { step };
+            step + way * (other - height) + (turned - way) * height
         };
+        toward(next).cross(toward(last)).try_normalize()
+    }
+
+    /// The normal at a corner, from inside of the triangle, and the angle there.
+    pub(super) fn normal(&self, corner: usize) -> Option<(DVec3, f64)> {
         let mut weights = [0.0; 3];
         weights[corner] = 1.0;
-        let here = self.at(weights);
         let (next, last) = ((corner + 1) % 3, (corner + 2) % 3);
-        let across = (toward(next) - here).cross(toward(last) - here);
         let (one, other) = (self.moved[next] - self.moved[corner], self.moved[last] - self.moved[corner]);
-        across.try_normalize().map(|normal| (normal, one.angle_between(other)))
+        self.normal_at(weights).map(|normal| (normal, one.angle_between(other)))
     }
 }

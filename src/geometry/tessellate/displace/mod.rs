@@ -15,6 +15,7 @@
 mod direction;
 mod field;
 mod normals;
+mod picture;
 #[cfg(test)]
 mod tests;
 
@@ -27,6 +28,8 @@ use super::deform::{Splitter, key};
 use super::{Deviation, Evidence, TessellateError};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::mesh::crossing::crossings;
+pub use picture::{PictureFault, normal_picture};
+
 use direction::Directions;
 use field::Facet;
 

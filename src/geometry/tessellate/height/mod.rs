@@ -130,7 +130,9 @@ impl HeightMap {
         DVec2::new(jet.dx * right, jet.dy * bottom) / self.size
     }
 
-    fn normal(&self, place: [f64; 2]) -> DVec3 {
+    /// The unit normal over a place in steps, upward.
+    #[must_use]
+    pub fn normal(&self, place: [f64; 2]) -> DVec3 {
         let slopes = self.slopes(place);
         DVec3::new(-slopes.x, 1.0, -slopes.y).normalize()
     }
