@@ -7,6 +7,7 @@
 mod assertion;
 mod deviation;
 pub mod facts;
+mod heights;
 mod joints;
 mod motion;
 mod polygons;
@@ -14,6 +15,7 @@ mod quadrics;
 
 pub use assertion::{Check, Fault};
 pub use deviation::measure_deviation;
+pub use heights::HeightFacts;
 pub use joints::JointFacts;
 pub use motion::{ClipFacts, PoseFacts, PosedVertex, ReachFacts, ReachFrame, SkinFacts};
 pub use quadrics::QuadricFacts;
@@ -63,6 +65,9 @@ pub struct Report {
     /// What each quadric of the document is.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub quadrics: IndexMap<String, QuadricFacts>,
+    /// How many polygons each height map stands for.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub heights: IndexMap<String, HeightFacts>,
     /// Each assertion of the document that holds.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub assertions: Vec<Check>,
@@ -245,6 +250,7 @@ pub fn measure(
         clips,
         paths: joints::joints(model),
         quadrics: quadrics::quadrics(model),
+        heights: heights::heights(&file, written, model, shapes),
         assertions: Vec::new(),
     })
 }
