@@ -59,7 +59,7 @@ mod tests {
     #[test]
     fn two_triangles_cover_a_square_once() {
         let corners = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
-        let mut seen = vec![0; 7 * 5];
+        let mut seen = [0; 7 * 5];
         for triangle in [[0, 1, 2], [0, 2, 3]] {
             texels(triangle.map(|k| corners[k]), [7, 5], |texel| {
                 assert!((texel.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);

@@ -125,6 +125,32 @@ impl<'a> Facet<'a> {
         toward(next).cross(toward(last)).try_normalize()
     }
 
+    /// Whether the moved surface is turned over at a corner: the height reaches below the center of its curvature. Of a
+    /// triangle at a sharp edge that cannot be told here.
+    pub(super) fn is_folded(&self, corner: usize) -> bool {
+        if !self.smooth {
+            return false;
+        }
+        let mut weights = [0.0; 3];
+        weights[corner] = 1.0;
+        let (_, height, way) = self.parts(weights);
+        let across = [1, 2].map(|step| {
+            let other = (corner + step) % 3;
+            let side = self.places[other] - self.places[corner];
+            (side - way * side.dot(way), self.ways[other] - way)
+        });
+        let turn = |height: f64| {
+            let [a, b] = across.map(|(side, turned)| side + turned * height);
+            a.cross(b).dot(way)
+        };
+        turn(height) <= 0.0 && turn(0.0) > 0.0
+    }
+
+    /// The moved corners.
+    pub(super) fn corners(&self) -> [DVec3; 3] {
+        self.moved
+    }
+
     /// The normal at a corner, from inside of the triangle, and the angle there.
     pub(super) fn normal(&self, corner: usize) -> Option<(DVec3, f64)> {
         let mut weights = [0.0; 3];

@@ -180,6 +180,10 @@ fn finished(
     moved: &[f64],
     error: f64,
 ) -> Result<(Mesh, Deviation), TessellateError> {
+    if let Some(place) = folded(&mesh, directions, heights, moved) {
+        return Err(TessellateError::CrossesItself { place });
+    }
+    let before = enclosed(&mesh);
     let normals = normals::normals(&mesh, directions, heights, moved);
     for ((point, height), at) in mesh.points.iter_mut().zip(moved).zip(0..) {
         *point += directions.at(at) * *height;
@@ -196,5 +200,37 @@ fn finished(
         let corners = triangles[*one as usize].map(|corner| mesh.points[corner as usize]);
         return Err(TessellateError::CrossesItself { place: (corners[0] + corners[1] + corners[2]) / 3.0 });
     }
+    // A body moved inward through its own middle crosses nothing, but is inside out.
+    if before.is_some_and(|volume| volume > 0.0) && enclosed(&mesh).is_some_and(|volume| volume <= 0.0) {
+        let middle = mesh.points.iter().sum::<DVec3>() / mesh.points.len() as f64;
+        return Err(TessellateError::CrossesItself { place: middle });
+    }
     Ok((mesh, Deviation::new(error, Evidence::Sampled)))
+}
+
+/// A place where the surface is turned over.
+fn folded(mesh: &Mesh, directions: &Directions, heights: &Heights<'_>, moved: &[f64]) -> Option<DVec3> {
+    (0..mesh.triangles.len()).into_par_iter().with_min_len(256).find_map_first(|triangle| {
+        let facet = Facet::of(mesh, directions, heights, moved, triangle);
+        (0..3).find(|corner| facet.is_folded(*corner)).map(|corner| facet.corners()[corner])
+    })
+}
+
+/// The volume inside of a mesh whose sides all have another beside them; of an open one none.
+fn enclosed(mesh: &Mesh) -> Option<f64> {
+    // Only looked up, never walked.
+    let mut open: HashSet<[u32; 2]> = HashSet::new();
+    let mut volume = 0.0;
+    for triangle in &mesh.triangles {
+        let points = triangle.map(|corner| mesh.vertices[corner.subscript()].point);
+        let [a, b, c] = points.map(|point| mesh.points[point.subscript()]);
+        volume += a.dot(b.cross(c)) / 6.0;
+        for k in 0..3 {
+            let (from, to) = (points[k].0, points[(k + 1) % 3].0);
+            if !open.remove(&[to, from]) {
+                open.insert([from, to]);
+            }
+        }
+    }
+    open.is_empty().then_some(volume)
 }

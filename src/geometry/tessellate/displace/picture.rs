@@ -48,10 +48,10 @@ pub fn normal_picture(
                 let place = (0..3).map(|k| uvs[k] * texel.weights[k]).sum();
                 fault.get_or_insert(PictureFault { place, overlap: true });
             }
-            if texel.inside > *inside {
-                if let Some(exact) = facet.normal_at(texel.weights) {
-                    (*normal, *inside) = (Some(exact), texel.inside);
-                }
+            if texel.inside > *inside
+                && let Some(exact) = facet.normal_at(texel.weights)
+            {
+                (*normal, *inside) = (Some(exact), texel.inside);
             }
         });
         if let Some(fault) = fault {

@@ -153,6 +153,11 @@ fn what_would_run_through_itself_is_refused() {
     let deep =
         moved(ball(1.0, 0.01), &|place, _| if place.y > 0.0 { -2.0 * place.y } else { 0.0 }, 4.0, 0.05);
     assert!(matches!(deep, Err(TessellateError::CrossesItself { .. })), "{deep:?}");
+    // Evenly through the middle: nothing crosses, but all is turned over.
+    for mesh in [ball(1.0, 0.01), cuboid(DVec3::ONE, DVec3::ZERO, true).mesh] {
+        let inverted = moved(mesh, &|_, _| -1.5, 0.0, 0.05);
+        assert!(matches!(inverted, Err(TessellateError::CrossesItself { .. })), "{inverted:?}");
+    }
 }
 
 #[test]
