@@ -3,9 +3,9 @@
 
     scripts/bench.py                  vase, sweep and loft on a fixed grid, the vase within 0.1 mm, peak memory,
                                       evaluation of curves, the teapot, a face at equal deviation, evaluation
-                                      of surfaces, booleans, every spec of the gallery
+                                      of surfaces, height maps, booleans, every spec of the gallery
     scripts/bench.py --only vase      one part: vase, sweep, loft, tolerance, memory, curves, teapot, face,
-                                      surfaces, booleans or gallery
+                                      surfaces, heights, booleans or gallery
     scripts/bench.py --large          memory up to an output of 1 GB
     scripts/bench.py --json FILE      the figures as JSON too
     scripts/bench.py --readme         also renews the tables between the markers in README.md
@@ -28,7 +28,7 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-from peers import booleans, evaluation, gallery, models, specs, surfaces
+from peers import booleans, evaluation, gallery, heights, models, specs, surfaces
 from peers.process import Runs, together
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -37,7 +37,20 @@ PYTHON = ROOT / ".venv" / "bin" / "python"
 CAD_PYTHON = ROOT / ".venv-peers" / "bin" / "python"
 KILN = Path(os.environ.get("KILN_BIN", ROOT / "target" / "release" / "kiln"))
 MARKERS = ("<!-- bench:begin -->", "<!-- bench:end -->")
-PARTS = ("vase", "sweep", "loft", "tolerance", "memory", "curves", "teapot", "face", "surfaces", "booleans", "gallery")
+PARTS = (
+    "vase",
+    "sweep",
+    "loft",
+    "tolerance",
+    "memory",
+    "curves",
+    "teapot",
+    "face",
+    "surfaces",
+    "heights",
+    "booleans",
+    "gallery",
+)
 
 TOLERANCE = 1e-4  # meters: a tenth of a millimeter on a vase of two meters
 # CadQuery's own tolerance is steered until its measured deviation is Kiln's; its angle is set out of the way.
@@ -92,6 +105,9 @@ def measure(part: str, folder: Path, options: argparse.Namespace) -> Part:
         return evaluation.measure(KILN, peer, folder, options.runs, tell)
     if part in ("teapot", "face", "surfaces"):
         return of_surfaces(part, folder, options.runs)
+    if part == "heights":
+        peer = [str(CAD_PYTHON), str(PEERS / "peer_delatin.py")]
+        return heights.measure(KILN, peer, folder, options.runs, tell)
     if part == "booleans":
         peers = [
             ("manifold-3d", ["node", str(PEERS / "peer_booleans.mjs")]),
@@ -252,6 +268,8 @@ def tables(figures: dict[str, Any]) -> str:
         blocks.append(face_table(figures["face"]["rows"]))
     if "surfaces" in figures:
         blocks.append(surfaces_table(figures["surfaces"]["rows"]))
+    if "heights" in figures:
+        blocks.append(heights_table(figures["heights"]["rows"]))
     if "booleans" in figures:
         blocks.append(booleans_table(figures["booleans"]["rows"]))
     if "gallery" in figures:
@@ -361,6 +379,27 @@ def surfaces_table(rows: list[dict[str, Any]]) -> str:
     """Evaluation by surface."""
     head = ["point and both first derivatives", "Kiln, ns", "geomdl, ns", "times Kiln"]
     body = [[row["surface"], ratio(row["kiln"]), count(row["geomdl"]), ratio(row["times-kiln"])] for row in rows]
+    return markdown(head, body)
+
+
+def heights_table(rows: list[dict[str, Any]]) -> str:
+    """Dense maps by base, and ground within an error."""
+    head = [
+        f"height maps: {heights.DENSE}² samples dense, {heights.GROUND}² within an error",
+        "ms",
+        "times the rough plane, or pydelatin",
+        "peak MB",
+        "triangles",
+    ]
+    body = [
+        [
+            row["tool"], thousandths(row["seconds"]), ratio(row["times"]), millions(row["peak"]),
+            count(row.get("triangles")),
+        ]
+        if row["failure"] is None
+        else [row["tool"], "failed", *["-"] * (len(head) - 2)]
+        for row in rows
+    ]  # fmt: skip
     return markdown(head, body)
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-CELLS = 192
+CELLS = 288  # more vertices than indices of 16 bits name
 SIZE = 2.0
 
 

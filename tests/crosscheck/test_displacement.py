@@ -143,8 +143,7 @@ def test_the_normal_map_of_ground_has_the_normals_of_its_spline(kiln: Kiln) -> N
     assert (away > 1).mean() < 0.005
     # The coarse mesh by itself is far from that.
     (part,) = [part for part in baked.document.meshes[0].surfaces if "TANGENT" in part.attributes]
-    bare = part.attributes["NORMAL"]
-    assert len(bare) < 300
+    assert len(part.triangles) < 800
     # Walls and the bottom keep the plain material.
     assert len(baked.document.meshes[0].surfaces) == 2
 
