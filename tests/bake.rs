@@ -22,6 +22,7 @@ mod operations;
 mod parametric;
 mod patches;
 mod paths;
+mod perturbed;
 mod polygons;
 mod primitives;
 mod quadrics;

@@ -171,34 +171,57 @@ impl Builder<'_> {
     }
 
     fn joined_fields(&mut self, written: &FieldJoin, join: fn(Blend) -> Join) -> Option<AnyField> {
-        let of: Vec<_> = written.of.iter().map(|field| self.field_of(field)).collect();
+        let of = self.fields_of(written.of.iter());
         let blend = match (written.blend.value, written.method.value) {
             (size, _) if size > 0.0 => Blend::Smooth(size),
             (_, JoinMethod::MinMax) => Blend::Sharp,
             (_, JoinMethod::RFunction) => Blend::Rvachev,
         };
-        let of: Option<Vec<_>> = of.into_iter().collect();
         Some(AnyField::Joined(Joined { join: join(blend), of: of? }))
     }
 
     fn field_sum(&mut self, written: &FieldSum) -> Option<AnyField> {
-        let of: Vec<_> = written.of.iter().map(|field| self.field_of(field)).collect();
-        let of: Option<Vec<_>> = of.into_iter().collect();
+        let of = self.fields_of(written.of.iter());
         let weight = |k: usize| written.weights.as_ref().map_or(1.0, |weights| weights.value[k]);
         let of = of?.into_iter().enumerate().map(|(k, field)| (weight(k), field)).collect();
         Some(AnyField::Sum(Sum { of, constant: written.constant.value }))
     }
 
     fn perturbed(&mut self, written: &PerturbedField) -> Option<AnyField> {
-        let base = self.field_of(&written.base);
-        let bumps: Vec<_> = (written.bumps.iter())
-            .map(|bump| {
-                let field = self.field_of(&bump.value.field)?;
-                Some(Bump { field, factor: bump.value.factor.value })
-            })
-            .collect();
-        let bumps: Option<Vec<_>> = bumps.into_iter().collect();
-        Some(AnyField::Perturbed(Perturbed { base: Box::new(base?), bumps: bumps? }))
+        let parts = core::iter::once(&written.base).chain(written.bumps.iter().map(|bump| &bump.value.field));
+        let mut parts = self.fields_of(parts)?.into_iter();
+        let base = Box::new(parts.next()?);
+        let bumps = parts.zip(&written.bumps);
+        let bumps = bumps.map(|(field, bump)| Bump { field, factor: bump.value.factor.value }).collect();
+        Some(AnyField::Perturbed(Perturbed { base, bumps }))
+    }
+
+    /// Several fields. What names the same fields again and again could grow without bound: parts are counted before more
+    /// are copied.
+    fn fields_of<'a>(&mut self, written: impl Iterator<Item = &'a FieldReference>) -> Option<Vec<AnyField>> {
+        const MOST: u64 = 1 << 16;
+        let mut all = Some(Vec::new());
+        let mut parts: u64 = 0;
+        for reference in written {
+            let Some(field) = self.field_of(reference) else {
+                all = None;
+                continue;
+            };
+            parts += field.weight();
+            if parts > MOST {
+                let message = format!(
+                    "this field is made of more than {MOST} parts, those of fields that it names included"
+                );
+                let report = Diagnostic::error(Code::LimitPassed, message)
+                    .at(reference.span(), "too many with this one");
+                self.report(report.help("name fewer fields, or the same fields less often"));
+                return None;
+            }
+            if let Some(all) = &mut all {
+                all.push(field);
+            }
+        }
+        all
     }
 
     fn skeleton(&mut self, written: &SkeletonField) -> Option<AnyField> {

@@ -37,6 +37,7 @@ mod parametric;
 mod part;
 mod patch;
 mod path;
+mod perturbed;
 mod polygon;
 mod primitive;
 mod profile;

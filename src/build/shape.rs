@@ -126,6 +126,7 @@ impl Builder<'_> {
                 let both = self.shows_both_sides(&definition.options);
                 self.parametric(surface, span, both).map(here)
             }
+            Kind::Perturbed(patches) => self.perturbed_patches(patches, span).map(here),
             Kind::Implicit(surface) => self.implicit_shape(surface, span).map(here),
             Kind::Mesh(mesh) => self.mesh(mesh, span).map(here),
             Kind::Import(import) => self.import(import, span).map(here),

@@ -6,8 +6,8 @@ use super::{Bending, Displacement, MaterialHandle, SolidRecipe, SubdivisionRecip
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::tessellate::{
-    BasedMap, ClippedQuadric, Extrusion, FieldSurface, FlatPlane, Geodesic, HeightMap, Patchwork, Revolution,
-    RoundedBox, Sheet, Sweep, TrimmedSurface, TwoSided,
+    BasedMap, ClippedQuadric, Extrusion, FieldSurface, FlatPlane, Geodesic, HeightMap, Patchwork,
+    PerturbedSkin, Revolution, RoundedBox, Sheet, Sweep, TrimmedSurface, TwoSided,
 };
 
 /// Index of a shape in its model.
@@ -68,6 +68,8 @@ pub enum Recipe {
         /// For each element of its skeleton the material; none where no element has one.
         materials: Vec<Option<MaterialHandle>>,
     },
+    /// Polygons with bumps.
+    Perturbed(Box<PerturbedSkin>),
     /// A part of a surface inside lines of its parameters.
     Trimmed(TrimmedSurface),
     /// Polygons, written out or imported. For each of their materials the model's, if it has one.

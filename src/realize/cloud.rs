@@ -42,6 +42,7 @@ pub(super) fn cloud(recipe: &Recipe) -> Vec<DVec3> {
         Recipe::Patches(patches) => patches.surfaces.iter().flat_map(lattice).collect(),
         Recipe::Trimmed(shape) => trimmed(shape),
         Recipe::Based(map) => super::height::points_of_based(map),
+        Recipe::Perturbed(skin) => skin.samples(),
         // No further than its box, and hardly less.
         Recipe::Quadric(_) | Recipe::Height(_) | Recipe::TwoSided(_) | Recipe::Implicit { .. } => {
             let bounds = extent(recipe);

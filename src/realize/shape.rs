@@ -13,8 +13,8 @@ use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex, Wire};
 use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::{
     DeformError, Deformed, Detail, Deviation, HeightBound, SurfaceDensity, TessellateError, Tessellation,
-    based_map, cuboid, deform, extrude, field_surface, geodesic, height_map, patchwork, plane, quadric,
-    revolve, rounded_box, sheet, sweep, trimmed, two_sided, wire,
+    based_map, cuboid, deform, extrude, field_surface, geodesic, height_map, patchwork, perturbed, plane,
+    quadric, revolve, rounded_box, sheet, sweep, trimmed, two_sided, wire,
 };
 use crate::model::{
     Displacement, Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing, UvMode,
@@ -188,6 +188,7 @@ impl<'a> Maker<'a> {
             Recipe::Patches(patches) => patchwork(patches, &detail),
             Recipe::Sheet(face) => sheet(face, &detail),
             Recipe::Quadric(shape) => quadric(shape, &detail),
+            Recipe::Perturbed(skin) => perturbed(skin, &detail),
             Recipe::Trimmed(shape) => trimmed(shape, &detail),
             Recipe::Implicit { surface: field, materials } => {
                 let made = field_surface(field, &detail).map_err(|error| self.in_terms_of_limits(error))?;

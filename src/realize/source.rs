@@ -16,8 +16,8 @@ use crate::geometry::number::{Bounds, hypot};
 use crate::geometry::subdivide::Scheme;
 use crate::geometry::surface::{AnySurface, Deformation, Surface as _, SweptWall};
 use crate::geometry::tessellate::{
-    BasedMap, ClippedQuadric, Closing, DeformError, Density, FieldSurface, HeightMap, Layer, RoundedBox,
-    Route, discretize,
+    BasedMap, ClippedQuadric, Closing, DeformError, Density, FieldSurface, HeightMap, Layer, PerturbedSkin,
+    RoundedBox, Route, discretize,
 };
 use crate::model::{KeptSide, Model, Recipe, ShapeHandle, SolidOperation, SolidRecipe};
 
@@ -33,6 +33,7 @@ pub(super) fn source_count(recipe: &Recipe) -> u32 {
         Recipe::Polygons { .. }
         | Recipe::Trimmed(_)
         | Recipe::Implicit { .. }
+        | Recipe::Perturbed(_)
         | Recipe::RoundedBox(_)
         | Recipe::Geodesic(_)
         | Recipe::Plane(_)
@@ -77,6 +78,8 @@ enum Kind {
     Derived,
     /// Where a field is zero.
     Implicit(Arc<FieldSurface>),
+    /// Polygons with bumps.
+    Perturbed(Arc<PerturbedSkin>),
 }
 
 /// All surfaces of a shape, by the source of an anchor.
@@ -268,6 +271,7 @@ fn kinds(recipe: &Recipe, bends: bool) -> Vec<Kind> {
             (0..ClippedQuadric::SOURCES).map(kind).collect()
         }
         Recipe::Implicit { surface, .. } => vec![Kind::Implicit(Arc::new(surface.as_ref().clone()))],
+        Recipe::Perturbed(skin) => vec![Kind::Perturbed(Arc::new(skin.as_ref().clone()))],
         Recipe::Wire(curves) => curves.iter().map(|curve| Kind::Line(curve.clone())).collect(),
         Recipe::Assembly(_)
         | Recipe::Deformed { .. }
@@ -411,6 +415,7 @@ impl Source {
             Kind::Based(map, layer) => super::height::distance_to_skin(map, *layer, local, window),
             Kind::Line(curve) => distance_near(curve, local, window.u),
             Kind::Implicit(surface) => surface.distance(local),
+            Kind::Perturbed(skin) => skin.distance(local),
             Kind::Quadric(quadric) => {
                 quadric.settled(local).map_or(f64::INFINITY, |nearest| nearest.distance(local))
             }
@@ -563,6 +568,7 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
         Recipe::Wire(curves) => curves.iter().map(along).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Quadric(shape) => shape.bounds(),
         Recipe::Implicit { surface, .. } => surface.within,
+        Recipe::Perturbed(skin) => skin.bounds(),
         Recipe::Trimmed(shape) => shape.bounds(),
         Recipe::Assembly(_)
         | Recipe::Deformed { .. }

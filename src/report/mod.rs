@@ -10,15 +10,19 @@ pub mod facts;
 mod heights;
 mod joints;
 mod motion;
+mod perturbed;
 mod polygons;
 mod quadrics;
+mod surfaces;
 
 pub use assertion::{Check, Fault};
 pub use deviation::measure_deviation;
 pub use heights::HeightFacts;
 pub use joints::JointFacts;
 pub use motion::{ClipFacts, PoseFacts, PosedVertex, ReachFacts, ReachFrame, SkinFacts};
+pub use perturbed::PerturbedFacts;
 pub use quadrics::QuadricFacts;
+pub use surfaces::{NetworkFacts, NetworkJoint, NetworkLine};
 
 use indexmap::IndexMap;
 use serde::Serialize;
@@ -68,6 +72,12 @@ pub struct Report {
     /// How many polygons each height map stands for.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub heights: IndexMap<String, HeightFacts>,
+    /// How the surfaces of each shape of several join.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub networks: IndexMap<String, NetworkFacts>,
+    /// How the surfaces of perturbed patches were made.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub perturbed: IndexMap<String, PerturbedFacts>,
     /// Each assertion of the document that holds.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub assertions: Vec<Check>,
@@ -251,6 +261,8 @@ pub fn measure(
         paths: joints::joints(model),
         quadrics: quadrics::quadrics(model),
         heights: heights::heights(&file, written, model, shapes),
+        networks: surfaces::networks(model),
+        perturbed: perturbed::perturbed(model),
         assertions: Vec::new(),
     })
 }

@@ -82,3 +82,21 @@ def test_surfaces_are_blenders(kiln: Kiln, *, weighted: bool, cyclic: bool) -> N
     own = 1.25 * hausdorff(rough, fine) / 3
     assert own < 5e-3
     assert hausdorff(asset.mesh("s"), fine) <= asset.shape("s")["deviation"]["bound"] + own + SINGLE
+
+
+def test_joints_of_networks_stand_in_the_report(kiln: Kiln) -> None:
+    """Two flat patches and a third that folds up from them: facts known beforehand, and what `sample` says."""
+    corners = ["[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 0]]", "[[1, 0, 0], [2, 0, 0]], [[1, 1, 0], [2, 1, 0]]"]
+    corners.append("[[2, 0, 0], [2, 0, 1]], [[2, 1, 0], [2, 1, 1]]")
+    parts = ", ".join(f"{{ patches = {{ degree = 1, control = [{net}] }} }}" for net in corners)
+    found = kiln.bake(f"[shape.a.joined]\nof = [{parts}]\n").report["networks"]["a"]
+    assert (found["surfaces"], found["open-sides"], found["collapsed-sides"]) == (3, 8, 0)
+    assert found["continuity"] == {"G0": 0, "C0": 1, "G1": 0, "C1": 0, "C2": 1}
+    folded = next(joint for joint in found["joints"] if joint["continuity"] == "C0")
+    assert folded["angle"] == pytest.approx(90, abs=1e-9)
+    assert folded["at"][0] == pytest.approx(2, abs=1e-12)
+    assert [line["surface"] for line in folded["between"]] == [1, 2]
+    assert [line["side"] for line in folded["between"]] == ["u-end", "u-start"]
+    said = kiln.sample("--shape", "a")
+    assert said["continuity"] == found["continuity"]
+    assert len(said["open-sides"]) == found["open-sides"]

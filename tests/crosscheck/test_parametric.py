@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
 
+from sampled import exponent
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -137,6 +139,19 @@ def test_area_is_the_integral(kiln: Kiln, name: str) -> None:
         assert facts["area"] == pytest.approx(expected, rel=tolerance)
         if surface.volume is not None:
             assert facts["volume"] == pytest.approx(surface.volume, rel=3.0 * tolerance)
+
+
+@pytest.mark.parametrize(("name", "coarsest"), [("steiner", 1e-2), ("klein", 3e-2), ("torus", 1e-2)])
+def test_measures_converge_with_the_tolerance(kiln: Kiln, name: str, coarsest: float) -> None:
+    """Over three decades of the tolerance the error of the area, and of the volume, falls with it."""
+    surface = SURFACES[name]
+    expected = surface.area(128)
+    assert surface.area(64) == pytest.approx(expected, rel=1e-12)
+    tolerances = [coarsest / 10 ** (k / 2) for k in range(7)]
+    shapes = [kiln.bake(surface.text(tolerance)).shape("s") for tolerance in tolerances]
+    assert exponent(tolerances, [abs(shape["area"] - expected) for shape in shapes]) >= 0.9
+    if surface.volume is not None:
+        assert exponent(tolerances, [abs(shape["volume"] - surface.volume) for shape in shapes]) >= 0.9
 
 
 @pytest.mark.parametrize("name", SURFACES)

@@ -9,6 +9,7 @@ mod element;
 mod join;
 mod primitive;
 pub mod quadric;
+mod relief;
 mod skeleton;
 #[cfg(test)]
 mod tests;
@@ -20,6 +21,7 @@ pub use element::{Element, Form, Line};
 pub use join::{Blend, Join};
 pub use primitive::Primitive;
 pub use quadric::Quadric;
+pub use relief::{Relief, ReliefBump, Zone};
 pub use skeleton::{Potential, Skeleton};
 pub use tree::{Joined, Placed, Sum};
 

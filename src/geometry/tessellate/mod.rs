@@ -17,6 +17,7 @@ mod field;
 mod geodesic;
 mod height;
 mod patch;
+mod perturbed;
 mod plane;
 mod quadric;
 mod region;
@@ -44,6 +45,7 @@ pub use height::{
     SurfaceBase, TwoSided, based_map, height_map, two_sided,
 };
 pub use patch::{Patchwork, Rim, patchwork};
+pub use perturbed::{NetBase, NetBump, NoSolid, PerturbedNet, PerturbedSkin, SkinFault, perturbed};
 pub use plane::{FlatPlane, plane};
 pub use quadric::{ClippedQuadric, quadric};
 pub use revolve::{Revolution, revolve};

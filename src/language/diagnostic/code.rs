@@ -382,6 +382,21 @@ codes! {
     /// a joint does not reach its target
     Unreached = "K0972";
 
+    /// a patch has no area, crosses itself, or is not flat
+    BadPatch = "K0973";
+    /// a patch does not look away from its center
+    PatchSight = "K0974";
+    /// a bump of a patch is no quadric
+    PatchBump = "K0975";
+    /// patches meet in a side as no skin does
+    PatchSide = "K0976";
+    /// a bump parts neighboring patches
+    PatchesPart = "K0977";
+    /// the surface of a patch goes too far
+    PatchReach = "K0978";
+    /// the surface of a patch overhangs, and no solid is known
+    PatchOverhang = "K0979";
+
     /// heights along normals run through each other
     DeepHeights = "K0980";
     /// a base that cannot carry heights

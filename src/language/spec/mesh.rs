@@ -112,7 +112,7 @@ impl Mesh {
     }
 }
 
-fn corner_fault(face: &[u32]) -> Option<String> {
+pub(super) fn corner_fault(face: &[u32]) -> Option<String> {
     if face.len() < 3 {
         return Some(format!("needs at least 3 corners, found {}", face.len()));
     }

@@ -39,6 +39,7 @@ mod parametric;
 mod part;
 mod patch;
 mod path;
+mod perturbed;
 mod point;
 mod polygon;
 mod primitive;
@@ -115,6 +116,7 @@ pub use parametric::Parametric;
 pub use part::{CurveGroup, Part};
 pub use patch::{HermiteSurface, Patches, SpokenContinuity};
 pub use path::{ArcSegment, Joint, Path, Segment};
+pub use perturbed::{PatchBump, PerturbedPatches};
 pub use point::{Count, Point, Scale, Segments};
 pub use polygon::{Face, Polygon, Sheet};
 pub use primitive::{

@@ -130,6 +130,8 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
             "split",
             "split part",
             "parametric",
+            "perturbed patches",
+            "patch bump",
             "implicit shape",
             "mesh",
             "import",

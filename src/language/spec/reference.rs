@@ -140,6 +140,17 @@ impl MapReference {
     }
 }
 
+impl FieldReference {
+    /// Where it is written.
+    #[must_use]
+    pub fn span(&self) -> Span {
+        match self {
+            Self::Named(name) => name.span,
+            Self::Inline(field) => field.span,
+        }
+    }
+}
+
 impl ShapeReference {
     /// Where it is written.
     #[must_use]

@@ -20,6 +20,7 @@ use crate::language::spec::mesh::Mesh;
 use crate::language::spec::nurbs_surface::{BSplineSurface, NurbsSurface};
 use crate::language::spec::parametric::Parametric;
 use crate::language::spec::patch::{HermiteSurface, Patches};
+use crate::language::spec::perturbed::PerturbedPatches;
 use crate::language::spec::point::{Scale, Segments};
 use crate::language::spec::polygon::{Polygon, Sheet};
 use crate::language::spec::primitive::{
@@ -168,6 +169,8 @@ kinds! {
         Split(Split) = "split";
         /// A surface by formulas of u and v.
         Parametric(Parametric) = "parametric";
+        /// Polygons with bumps.
+        Perturbed(PerturbedPatches) = "perturbed";
         /// Where a field is zero.
         Implicit(ImplicitShape) = "implicit";
         /// Points and faces, written out.

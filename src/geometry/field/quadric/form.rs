@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 
 use super::Quadric;
 use crate::geometry::field::Field;
-use crate::geometry::number::principal_axes;
+use crate::geometry::number::{Bounds, principal_axes};
 
 /// The surface of a quadric. In the frame of its axes, with half lengths a, b, c:
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,6 +136,14 @@ impl QuadricForm {
         let center = axes.axes * (rotated / DVec3::from_array(axes.values) / -2.0);
         let size = (quadric.value(center) / least).abs().sqrt();
         Self::new(quadric, center, if size > 0.0 { size } else { 1.0 })
+    }
+
+    /// The smallest box around an ellipsoid.
+    #[must_use]
+    pub fn box_around(&self) -> Bounds {
+        // Its half widths are the lengths of the rows of its axes times half lengths.
+        let reach = DVec3::from_array([0, 1, 2].map(|row| (self.axes.row(row) * self.half).length()));
+        Bounds { min: self.origin - reach, max: self.origin + reach }
     }
 
     /// Coordinates along the axes.

@@ -11,7 +11,7 @@ mod tests;
 pub use form::{QuadricForm, QuadricKind};
 pub use sheet::{HalfSpace, Sheet};
 
-use glam::{DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::Field;
 use crate::geometry::number::Bounds;
@@ -46,14 +46,28 @@ impl Quadric {
         Self { a: self.a, b: self.gradient(origin), c: self.value(origin) }
     }
 
+    /// The polynomial that has at every point the value of this one at the point's image under `back`.
+    #[must_use]
+    pub fn mapped(&self, back: &DAffine3) -> Self {
+        let matrix = back.matrix3;
+        Self {
+            a: matrix.transpose() * self.a * matrix,
+            b: matrix.transpose() * self.gradient(back.translation),
+            c: self.value(back.translation),
+        }
+    }
+
+    /// The sum with another one times a factor.
+    #[must_use]
+    pub fn plus(&self, other: &Self, factor: f64) -> Self {
+        Self { a: self.a + other.a * factor, b: self.b + other.b * factor, c: self.c + other.c * factor }
+    }
+
     /// A box around an ellipsoid; none for surfaces without end.
     #[must_use]
     pub fn ends(&self) -> Option<Bounds> {
         let form = QuadricForm::anywhere(self);
-        (form.kind == QuadricKind::Ellipsoid && self.bent(DVec3::X) > 0.0).then(|| {
-            let reach = DVec3::splat(form.half.max_element());
-            Bounds { min: form.origin - reach, max: form.origin + reach }
-        })
+        (form.kind == QuadricKind::Ellipsoid && self.bent(DVec3::X) > 0.0).then(|| form.box_around())
     }
 
     /// What the squares and products make of a direction.

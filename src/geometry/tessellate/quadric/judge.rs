@@ -66,7 +66,8 @@ pub(super) fn judge(quadric: &Quadric, corners: [DVec3; 3]) -> Judgment {
         let bound = reach(quadric, value, &[gradients[from], gradients[to]]);
         return Judgment { bound, worst: DVec3::from_array(worst) };
     }
-    let (value, worst) = greatest(quadric, &corners);
+    let [a, b, c] = corners;
+    let (value, worst) = greatest([c - b, a - c, b - a].map(|side| quadric.bent(side)));
     Judgment { bound: reach(quadric, value, &gradients), worst }
 }
 
@@ -84,11 +85,9 @@ fn reach(quadric: &Quadric, value: f64, gradients: &[DVec3]) -> f64 {
     2.0 * value / (least + room.sqrt())
 }
 
-/// The greatest size of the polynomial on a triangle with corners on the surface, and where that is.
-fn greatest(quadric: &Quadric, corners: &[DVec3; 3]) -> (f64, DVec3) {
-    let [a, b, c] = *corners;
-    // Opposite corner a, b, c.
-    let [p, q, r] = [quadric.bent(c - b), quadric.bent(a - c), quadric.bent(b - a)];
+/// The greatest size of `b c p + c a q + a b r` on a triangle, for the shares a, b, c of its corners and numbers p, q, r of
+/// the sides across from them; and the shares where that is.
+pub(in crate::geometry::tessellate) fn greatest([p, q, r]: [f64; 3]) -> (f64, DVec3) {
     let middles = [
         (p.abs() / 4.0, DVec3::new(0.0, 0.5, 0.5)),
         (q.abs() / 4.0, DVec3::new(0.5, 0.0, 0.5)),

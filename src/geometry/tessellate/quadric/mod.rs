@@ -20,6 +20,7 @@ use crate::geometry::field::quadric::{HalfSpace, QuadricForm, QuadricKind};
 use crate::geometry::field::{Field, Quadric};
 use crate::geometry::number::Bounds;
 use crate::geometry::tessellate::region::Cut;
+pub(super) use judge::greatest;
 use shell::Shell;
 use walled::TRIES;
 
@@ -68,10 +69,7 @@ impl ClippedQuadric {
         if form.kind != QuadricKind::Ellipsoid {
             return clip;
         }
-        // The half widths of an ellipsoid are the lengths of the rows of its axes times half lengths.
-        let reach = |row: usize| (form.axes.row(row) * form.half).length();
-        let reach = DVec3::new(reach(0), reach(1), reach(2));
-        let own = Bounds { min: form.origin - reach, max: form.origin + reach };
+        let own = form.box_around();
         Bounds { min: clip.min.max(own.min), max: clip.max.min(own.max) }
     }
 }
