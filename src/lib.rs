@@ -26,8 +26,9 @@
 //! | `model` | `geometry`, `motion` |
 //! | `scene` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `model` |
 //! | `realize` | `geometry`, `motion`, `model`, `scene` |
-//! | `optimize` | `geometry::number`, `geometry::mesh`, `motion`, `scene` |
-//! | `gltf` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `scene` |
+//! | `packing` | |
+//! | `optimize` | `geometry::number`, `geometry::mesh`, `motion`, `packing`, `scene` |
+//! | `gltf` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `packing`, `scene` |
 //! | `report` | `geometry`, `motion`, `model`, `scene`, `realize`, `gltf` |
 //! | `preview` | `geometry::number`, `import` |
 //! | `language` | `geometry::number` |
@@ -53,6 +54,7 @@ pub mod language;
 pub mod model;
 pub mod motion;
 pub mod optimize;
+pub mod packing;
 pub mod preview;
 mod project;
 pub mod realize;

@@ -1,6 +1,8 @@
 //! Ordered passes from scene to scene. They never tessellate and know nothing of the model.
 
+mod band;
 mod compact;
+mod order;
 mod tangent;
 
 use crate::scene::Scene;
@@ -11,4 +13,5 @@ pub fn run(scene: &mut Scene) {
         compact::compact(&mut geometry.mesh, geometry.influences.as_mut());
     }
     tangent::tangents(scene);
+    scene.geometries.iter_mut().for_each(order::order);
 }

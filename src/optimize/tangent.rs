@@ -1,16 +1,14 @@
 //! MikkTSpace tangents, where and only where a normal texture is shown.
 //!
-//! The one place that calls `meshopt`: its functions trust their input, so all is checked here first.
-//! Source: M. Mikkelsen, Simulation of wrinkled surfaces revisited, 2008; meshopt's compatible mode agrees
-//! with the reference implementation. Vertices whose corners have different tangents are split.
+//! Vertices whose corners have different tangents are split.
 
 use std::collections::HashMap;
 
 use glam::DVec3;
-use meshopt::TangentOptions;
 
 use crate::geometry::mesh;
 use crate::geometry::mesh::{Mesh, VertexIndex};
+use crate::packing;
 use crate::scene::{Geometry, Scene};
 
 /// Gives tangents to every geometry that is shown with a normal texture.
@@ -62,10 +60,7 @@ fn corner_tangents(mesh: &Mesh) -> Vec<[f32; 4]> {
     let normals: Vec<[f32; 3]> = mesh.vertices.iter().map(|vertex| single(vertex.normal)).collect();
     let uvs: Vec<[f32; 2]> = mesh.vertices.iter().map(|vertex| vertex.uv.as_vec2().to_array()).collect();
     let indices: Vec<u32> = mesh.triangles.iter().flatten().map(|vertex| vertex.0).collect();
-    let count = mesh::index(positions.len());
-    assert!(indices.iter().all(|index| *index < count), "a mesh's indices are in range");
-    let made =
-        meshopt::generate_tangents(Some(&indices), &positions, &normals, &uvs, TangentOptions::Compatible);
+    let made = packing::corner_tangents(&indices, &positions, &normals, &uvs);
     made.into_iter().zip(&indices).map(|(tangent, index)| unit(tangent, normals[*index as usize])).collect()
 }
 

@@ -1,0 +1,19 @@
+//! The one adapter to `meshopt`, whose functions trust their input.
+//!
+//! Promise: every index, count and stride is checked before it is handed over, so that no input of these functions can
+//! read or write beyond its arrays; a result depends on the input alone. Only what computes in integers is taken where
+//! bytes of a file depend on it, for sums of floats differ between processors; tangents are the exception. Not
+//! promised: that indices are those of a sensible mesh.
+//!
+//! Source: A. Kapoulkine, meshoptimizer 1.3, 2026.
+
+mod order;
+mod tangent;
+
+pub use order::order_for_cache;
+pub use tangent::corner_tangents;
+
+/// Whether all indices are below a count, and make whole triangles.
+fn whole_triangles(indices: &[u32], vertices: usize) -> bool {
+    indices.len().is_multiple_of(3) && indices.iter().max().is_none_or(|most| (*most as usize) < vertices)
+}
