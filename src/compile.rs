@@ -11,11 +11,13 @@ use crate::build::{self, Built};
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::{DeformError, Evidence, TessellateError};
+use crate::gltf::Profile;
 use crate::language::Document;
 use crate::language::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::language::source::{Files, Span};
-use crate::language::spec::{Assertion, Demand, Expected, Spec};
+use crate::language::spec::{Assertion, Demand, Expected, OutputProfile, Spec};
 use crate::model::{Model, ShapeHandle};
+use crate::optimize::Rounding;
 use crate::realize::{self, RealizeError, Realized};
 use crate::report::{About, Check, Report};
 use crate::scene::SceneError;
@@ -36,6 +38,8 @@ pub struct Options {
     pub no_report: bool,
     /// Measure the deviation by dense sampling.
     pub measure: bool,
+    /// For whom files are; where empty, for whom the document says, and without that, for all.
+    pub profiles: Vec<Profile>,
 }
 
 /// One asset.
@@ -45,52 +49,187 @@ pub struct Compiled {
     pub bytes: Vec<u8>,
     /// Name of the file.
     pub file: String,
+    /// For whom it is.
+    pub profile: Profile,
     /// What is known of it.
     pub report: Option<Report>,
     /// What a person should know though nothing is wrong.
     pub warnings: Diagnostics,
 }
 
-/// Compiles one asset of a document.
+/// Compiles one asset of a document, for the first of its profiles.
 ///
 /// # Errors
 /// Everything that is wrong with the document, or the assertions that do not hold.
 pub fn compile(document: &Document, files: &dyn Files, options: &Options) -> Result<Compiled, Diagnostics> {
+    let compiled = compile_profiles(document, files, options)?;
+    let first = compiled.into_iter().next();
+    Ok(first.expect("a document has at least one profile"))
+}
+
+/// Compiles one asset of a document for each of its profiles; at least one. Warnings stand with the first file that
+/// they are true of. Surfaces are cut into triangles once.
+///
+/// # Errors
+/// Everything that is wrong with the document, or the assertions that do not hold.
+pub fn compile_profiles(
+    document: &Document,
+    files: &dyn Files,
+    options: &Options,
+) -> Result<Vec<Compiled>, Diagnostics> {
     let fail = |list: Vec<Diagnostic>| document.diagnostics(list);
     let (spec, mut warnings) = document.spec(options.variant.as_deref(), &options.overrides)?;
     let built = build::model(&spec, &options.name, files).map_err(fail)?;
     warnings.extend(built.warnings.iter().cloned());
-    let realized = realize::scene(&built.model, &realize::Options::default());
-    let Realized { mut scene, shapes, loose, notes } =
-        realized.map_err(|errors| fail(refusals(&built, errors)))?;
-    warnings.extend(notes.iter().map(|(shape, note)| noticed(&built, *shape, note)));
-    warnings.extend(loose.iter().map(|one| motion::loose(&built, one)));
-    warnings.extend(beyond_tolerance(&scene, &shapes, &built));
-    optimize::run(&mut scene);
-    realize::normal_maps(&built.model, &mut scene, &shapes)
-        .map_err(|errors| fail(refusals(&built, errors)))?;
-    let checked = scene::check::check(&scene).map_err(|error| fail(vec![unwritable(&error, &built)]))?;
-    let file = file_name(options);
-    let written = gltf::write(checked, options.measure);
-    // From here on the bytes speak for themselves; the scene's memory is needed no more.
-    drop(scene);
-    let written = written.map_err(|error| {
-        fail(vec![Diagnostic::error(Code::LimitPassed, error.to_string()).at(Span::NONE, "")])
-    })?;
-    let report = if options.no_report {
-        None
-    } else {
-        let about = About {
-            spec: &options.path,
-            variant: options.variant.as_deref(),
-            file: &file,
-            measure: options.measure,
+    let profiles = profiles(&spec, options);
+    if let Some(same) = same_file(document, &profiles) {
+        return Err(fail(vec![same]));
+    }
+    let made = Made { document, spec: &spec, built: &built, options };
+    // One scene for floats, and one for whole numbers.
+    let mut scenes: [Option<Realized>; 2] = [None, None];
+    let mut all = Vec::with_capacity(profiles.len());
+    for (place, profile) in profiles.iter().enumerate() {
+        let kept = &mut scenes[usize::from(profile.is_quantized())];
+        let realized = match kept.take() {
+            Some(realized) => realized,
+            None => {
+                let (realized, found) = made.realized(*profile).map_err(fail)?;
+                if place == 0 {
+                    warnings.extend(found);
+                }
+                realized
+            }
         };
-        let report = measured(&written, &built.model, &shapes, &about, &spec).map_err(fail)?;
-        warnings.extend(beyond_bound(&report, &shapes, &built));
-        Some(report)
-    };
-    Ok(Compiled { bytes: written.bytes, file, report, warnings: document.diagnostics(warnings) })
+        if profiles[place + 1..].iter().any(|other| other.is_quantized() == profile.is_quantized()) {
+            *kept = Some(realized.clone());
+        }
+        all.push(made.file(realized, *profile, std::mem::take(&mut warnings)).map_err(fail)?);
+    }
+    Ok(all)
+}
+
+/// A variant and a profile whose files would have one name.
+fn same_file(document: &Document, profiles: &[Profile]) -> Option<Diagnostic> {
+    let variants = document.variants();
+    let same = profiles.iter().find(|profile| {
+        **profile != Profile::Core && variants.iter().any(|variant| variant == profile.name())
+    })?;
+    let message =
+        format!("the variant `{0}` and the profile `{0}` would be written to one file", same.name());
+    Some(Diagnostic::error(Code::SameFile, message).at(Span::NONE, "").help("give the variant another name"))
+}
+
+/// For whom an asset is, each once.
+fn profiles(spec: &Spec, options: &Options) -> Vec<Profile> {
+    let mut all = options.profiles.clone();
+    if all.is_empty() {
+        let named = spec.output.profiles.iter().flat_map(|list| &list.value);
+        all = named.map(|profile| profile_of(profile.value)).collect();
+    }
+    let mut seen = Vec::new();
+    all.retain(|profile| {
+        !seen.contains(profile) && {
+            seen.push(*profile);
+            true
+        }
+    });
+    if all.is_empty() { vec![Profile::default()] } else { all }
+}
+
+fn profile_of(name: OutputProfile) -> Profile {
+    match name {
+        OutputProfile::Core => Profile::Core,
+        OutputProfile::Quantized => Profile::Quantized,
+        OutputProfile::Web => Profile::Web,
+    }
+}
+
+/// What all files of an asset are made of.
+struct Made<'a> {
+    document: &'a Document,
+    spec: &'a Spec,
+    built: &'a Built,
+    options: &'a Options,
+}
+
+/// The part of the tolerance that is left to surfaces where positions are rounded to a grid.
+const LEFT: f64 = 1.0 - optimize::GRID_SHARE;
+
+impl Made<'_> {
+    /// The scene for a profile, with what there is to say of it. Where rounding takes a part of the tolerance, surfaces
+    /// are kept within the rest of it.
+    fn realized(&self, profile: Profile) -> Result<(Realized, Vec<Diagnostic>), Vec<Diagnostic>> {
+        let built = self.built;
+        let coarser = if profile.is_quantized() { LEFT } else { 1.0 };
+        let realized = realize::scene(&built.model, &realize::Options { coarser });
+        let mut realized = realized.map_err(|errors| refusals(built, errors))?;
+        for geometry in &mut realized.scene.geometries {
+            geometry.tolerance = geometry.tolerance.map(|tolerance| tolerance / coarser);
+        }
+        let Realized { scene, shapes, loose, notes } = &realized;
+        let mut found: Vec<Diagnostic> =
+            notes.iter().map(|(shape, note)| noticed(built, *shape, note)).collect();
+        found.extend(loose.iter().map(|one| motion::loose(built, one)));
+        found.extend(beyond_tolerance(scene, shapes, built));
+        Ok((realized, found))
+    }
+
+    /// The file of a profile, with these warnings and what there is to say of it alone.
+    fn file(
+        &self,
+        realized: Realized,
+        profile: Profile,
+        mut warnings: Vec<Diagnostic>,
+    ) -> Result<Compiled, Vec<Diagnostic>> {
+        let Self { built, options, .. } = *self;
+        let Realized { mut scene, shapes, .. } = realized;
+        let rounding = match profile {
+            Profile::Core => Rounding::Single,
+            Profile::Quantized => Rounding::Fine,
+            Profile::Web => Rounding::Coarse,
+        };
+        if let Err(coarse) = optimize::run(&mut scene, rounding) {
+            warnings.push(too_coarse(profile, &coarse, self.spec));
+        }
+        let checked = scene::check::check(&scene).map_err(|error| vec![unwritable(&error, built)])?;
+        let file = file_name(options, profile);
+        let written = gltf::write(checked, profile, options.measure);
+        // From here on the bytes speak for themselves; the scene's memory is needed no more.
+        drop(scene);
+        let written = written.map_err(|error| {
+            vec![Diagnostic::error(Code::LimitPassed, error.to_string()).at(Span::NONE, "")]
+        })?;
+        let report = if options.no_report {
+            None
+        } else {
+            let about = About {
+                spec: &options.path,
+                variant: options.variant.as_deref(),
+                profile,
+                file: &file,
+                measure: options.measure,
+            };
+            let report = measured(&written, &built.model, &shapes, &about, self.spec)?;
+            warnings.extend(beyond_bound(&report, &shapes, built));
+            Some(report)
+        };
+        let warnings = self.document.diagnostics(warnings);
+        Ok(Compiled { bytes: written.bytes, file, profile, report, warnings })
+    }
+}
+
+fn too_coarse(profile: Profile, coarse: &optimize::TooCoarse, spec: &Spec) -> Diagnostic {
+    let message = format!(
+        "profile `{}` keeps its positions in single precision: on a grid of 16 bits over the whole model they would move by up to {:.3e} m, and an eighth of the tolerance, {:.3e} m, is what rounding may take",
+        profile.name(),
+        coarse.moved,
+        coarse.allowed
+    );
+    let place = spec.tolerance.as_ref().map_or(Span::NONE, |tolerance| tolerance.span);
+    Diagnostic::warning(Code::CoarseGrid, message)
+        .at(place, "")
+        .help("write a coarser `tolerance`, or split the model into documents of their own")
 }
 
 /// Builds the exact model of a document, for `sample`.
@@ -131,11 +270,11 @@ pub fn curve(
     Ok(parts.and_then(|parts| parts.into_iter().next()))
 }
 
-fn file_name(options: &Options) -> String {
-    match &options.variant {
-        Some(variant) => format!("{}.{variant}.glb", options.name),
-        None => format!("{}.glb", options.name),
-    }
+/// The file of an asset: `NAME.glb`, with the variant and every profile but `core` before the end.
+fn file_name(options: &Options, profile: Profile) -> String {
+    let variant = options.variant.as_deref().map_or_else(String::new, |variant| format!(".{variant}"));
+    let profile = if profile == Profile::Core { String::new() } else { format!(".{}", profile.name()) };
+    format!("{}{variant}{profile}.glb", options.name)
 }
 
 fn place(built: &Built, shape: ShapeHandle) -> Span {

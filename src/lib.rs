@@ -29,8 +29,8 @@
 //! | `packing` | |
 //! | `optimize` | `geometry::number`, `geometry::mesh`, `motion`, `packing`, `scene` |
 //! | `gltf` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `packing`, `scene` |
-//! | `report` | `geometry`, `motion`, `model`, `scene`, `realize`, `gltf` |
-//! | `preview` | `geometry::number`, `import` |
+//! | `report` | `geometry`, `motion`, `model`, `packing`, `scene`, `realize`, `gltf` |
+//! | `preview` | `geometry::number`, `packing`, `import` |
 //! | `language` | `geometry::number` |
 //! | `build` | `geometry`, `motion`, `import`, `language`, `model` |
 //! | `compile` | everything but `cli` |
@@ -63,6 +63,7 @@ pub mod scene;
 
 pub use build_script::Build;
 pub use compile::compile;
+pub use gltf::Profile;
 
 /// The lines of the README that a build script takes are compiled with the documentation's tests.
 #[cfg(doctest)]

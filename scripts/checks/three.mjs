@@ -3,6 +3,7 @@
 // node checks/three.mjs OUT.json FILE...
 import fs from 'node:fs';
 import * as THREE from 'three';
+import { MeshoptDecoder } from 'three/examples/jsm/libs/meshopt_decoder.module.js';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 
 globalThis.self ??= globalThis;
@@ -27,7 +28,8 @@ function withoutLooks(bytes) {
 }
 
 function load(buffer) {
-  return new Promise((resolve, reject) => new GLTFLoader().parse(buffer, '', resolve, reject));
+  const loader = new GLTFLoader().setMeshoptDecoder(MeshoptDecoder);
+  return new Promise((resolve, reject) => loader.parse(buffer, '', resolve, reject));
 }
 
 // The loaded objects by the names of the file's nodes.
@@ -35,7 +37,8 @@ function byName(gltf, document) {
   const objects = new Map();
   gltf.scene.traverse((object) => {
     const index = gltf.parser.associations.get(object)?.nodes;
-    if (index !== undefined && !objects.has(document.nodes[index].name)) objects.set(document.nodes[index].name, object);
+    const name = document.nodes[index]?.name;
+    if (name !== undefined && !objects.has(name)) objects.set(name, object);
   });
   return objects;
 }

@@ -95,6 +95,9 @@ def shape(mesh: Mesh) -> dict[str, Any]:
         "crowded-edges": edges.crowded,
         "misoriented-edges": edges.misoriented,
         "degenerate-triangles": degenerate(points, triangles),
+        "collapsed-triangles": int(
+            (np.sort(triangles, axis=1)[:, :-1] == np.sort(triangles, axis=1)[:, 1:]).any(axis=1).sum()
+        ),
         "repeated-triangles": len(triangles) - len(np.unique(np.sort(triangles, axis=1), axis=0)),
         "largest-normal-error": max((normal_error(p) for p in mesh.surfaces), default=0.0),
         "unused-vertices": unused(mesh.surface) + unused(mesh.lines),

@@ -17,7 +17,8 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
-use crate::compile::{Compiled, Options, compile};
+use crate::compile::{Compiled, Options, compile_profiles};
+use crate::gltf::Profile;
 use crate::language::source::{FileRecord, Files as _};
 use crate::project::{Task, Told, collect, reason, save};
 use module::Asset;
@@ -43,6 +44,7 @@ pub struct Build {
     root: Option<PathBuf>,
     out: Option<PathBuf>,
     parameters: Vec<(String, String)>,
+    profiles: Vec<Profile>,
     report: bool,
 }
 
@@ -75,7 +77,14 @@ const MANY: u64 = 100_000;
 impl Build {
     /// A bake of all documents in a folder and in its folders, or of one document.
     pub fn new(folder: impl Into<PathBuf>) -> Self {
-        Self { folder: folder.into(), root: None, out: None, parameters: Vec::new(), report: true }
+        Self {
+            folder: folder.into(),
+            root: None,
+            out: None,
+            parameters: Vec::new(),
+            profiles: Vec::new(),
+            report: true,
+        }
     }
 
     /// The folder that no document may read outside of; without it, the folder of the documents.
@@ -96,6 +105,14 @@ impl Build {
     #[must_use]
     pub fn set(mut self, name: impl Into<String>, value: impl std::fmt::Display) -> Self {
         self.parameters.push((name.into(), value.to_string()));
+        self
+    }
+
+    /// For whom files are, whatever documents say: `core`, which every engine opens, when nothing is named anywhere. Of
+    /// several profiles each file is an asset of its own in the module.
+    #[must_use]
+    pub fn profile(mut self, profile: Profile) -> Self {
+        self.profiles.push(profile);
         self
     }
 
@@ -207,15 +224,18 @@ impl Build {
                         path: task.path.clone(),
                         no_report: !self.report,
                         measure: false,
+                        profiles: self.profiles.clone(),
                     };
                     let folder = task.output.rsplit_once('/').map_or("", |(folder, _)| folder);
                     let variant = options.variant.as_deref();
-                    match compile(&document, &files, &options) {
-                        Ok(mut compiled) => {
-                            let warnings =
-                                std::mem::replace(&mut compiled.warnings, document.diagnostics(Vec::new()));
-                            done.warn(&told.only_new(&document, warnings, variant));
-                            done.assets.push((folder.to_owned(), compiled));
+                    match compile_profiles(&document, &files, &options) {
+                        Ok(all) => {
+                            for mut compiled in all {
+                                let none = document.diagnostics(Vec::new());
+                                let warnings = std::mem::replace(&mut compiled.warnings, none);
+                                done.warn(&told.only_new(&document, warnings, variant));
+                                done.assets.push((folder.to_owned(), compiled));
+                            }
                         }
                         Err(list) => done.fail(&told.only_new(&document, list, variant)),
                     }

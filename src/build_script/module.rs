@@ -26,7 +26,8 @@ impl Asset {
         let bounds =
             compiled.report.as_ref().map(|report| [report.totals.bounds.min, report.totals.bounds.max]);
         // What was written is read; it cannot be broken.
-        let root = crate::gltf::read(&compiled.bytes).map(|read| read.root).unwrap_or_default();
+        let plain = crate::packing::unpacked(&compiled.bytes).unwrap_or_default();
+        let root = crate::gltf::read(&plain).map(|read| read.root).unwrap_or_default();
         Self { folder: folder.to_owned(), file: compiled.file.clone(), bounds, lists: lists(&root) }
     }
 

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::gltf::Profile;
 use crate::preview::View;
 
 /// Bakes model specs (TOML) into glTF.
@@ -108,6 +109,9 @@ pub(crate) struct Bake {
     /// Measure the distance from the true surface by dense sampling too
     #[arg(long, conflicts_with = "no_report")]
     pub(crate) measure: bool,
+    /// For whom files are; several make several files [default: what the document says, else core]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = profile)]
+    pub(crate) profile: Vec<Profile>,
     /// Write no report, and check no assertions
     #[arg(long)]
     pub(crate) no_report: bool,
@@ -254,6 +258,11 @@ fn assignment(text: &str) -> Result<(String, String), String> {
         }
         _ => Err("write NAME=VALUE, as in `height=0.3`".to_owned()),
     }
+}
+
+fn profile(text: &str) -> Result<Profile, String> {
+    let names: Vec<&str> = Profile::NAMED.iter().map(|(name, _)| *name).collect();
+    Profile::named(text).ok_or_else(|| format!("write one of {}", names.join(", ")))
 }
 
 fn view(text: &str) -> Result<View, String> {

@@ -15,7 +15,7 @@ use super::arguments::Bake;
 use super::dependencies::Dependencies;
 use super::output::Printer;
 use super::project::tasks;
-use crate::compile::{Compiled, Options, compile};
+use crate::compile::{Compiled, Options, compile_profiles};
 use crate::language::source::Files as _;
 use crate::project::{Task, Told, reason, save};
 use crate::report::{DeviationFacts, Kind, Report};
@@ -192,12 +192,16 @@ impl Worker<'_> {
                 path: task.path.clone(),
                 no_report: self.bake.no_report,
                 measure: self.bake.measure,
+                profiles: self.bake.profile.clone(),
             };
-            outcome = outcome.max(match compile(&document, &files, &options) {
-                Ok(mut compiled) => {
-                    compiled.warnings =
-                        told.only_new(&document, compiled.warnings, options.variant.as_deref());
-                    self.put(task, compiled, (messages, &mut outputs))
+            outcome = outcome.max(match compile_profiles(&document, &files, &options) {
+                Ok(compiled) => {
+                    let put = |mut compiled: Compiled| {
+                        compiled.warnings =
+                            told.only_new(&document, compiled.warnings, options.variant.as_deref());
+                        self.put(task, compiled, (messages, &mut outputs))
+                    };
+                    compiled.into_iter().map(put).max().unwrap_or(Outcome::Good)
                 }
                 Err(list) => {
                     let list = told.only_new(&document, list, options.variant.as_deref());
@@ -259,6 +263,7 @@ impl Worker<'_> {
             "asset": target.display().to_string(),
             "spec": task.path,
             "variant": compiled.report.as_ref().and_then(|report| report.variant.clone()),
+            "profile": compiled.profile.name(),
             "bytes": compiled.bytes.len(),
             "triangles": compiled.report.as_ref().map(|report| report.totals.triangles),
             "deviation": compiled.report.as_ref().and_then(worst),

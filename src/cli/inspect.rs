@@ -6,6 +6,7 @@ use super::Outcome;
 use super::arguments::{Format, Inspect};
 use super::output::Printer;
 use crate::gltf;
+use crate::packing::unpacked;
 use crate::project::reason;
 use crate::report::{line_facts, mesh_facts};
 
@@ -17,7 +18,14 @@ pub(crate) fn run(inspect: &Inspect, printer: &Printer) -> Outcome {
             return Outcome::Files;
         }
     };
-    let file = match gltf::read(&bytes) {
+    let plain = match unpacked(&bytes) {
+        Ok(plain) => plain,
+        Err(error) => {
+            printer.failure(&format!("{}: {error}", inspect.file.display()), None);
+            return Outcome::Errors;
+        }
+    };
+    let file = match gltf::read(&plain) {
         Ok(file) => file,
         Err(error) => {
             printer.failure(&format!("{}: {error}", inspect.file.display()), None);

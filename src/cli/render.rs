@@ -9,6 +9,7 @@ use super::arguments::{Hidden, Render, ShadingName};
 use super::output::Printer;
 use super::project::task;
 use crate::compile::{Options, compile};
+use crate::gltf::Profile;
 use crate::preview::asset::{self, Asset};
 use crate::preview::lines::{Ink, draw_lines, postscript, svg};
 use crate::preview::{Camera, Look, Moment, Picture, Projection, Shading, Stage, View, draw_picture};
@@ -114,6 +115,7 @@ fn bytes(render: &Render, printer: &Printer) -> Result<Vec<u8>, Fault> {
         path: task.path.clone(),
         no_report: true,
         measure: false,
+        profiles: vec![Profile::Core],
     };
     let compiled = document.and_then(|document| compile(&document, &files, &options));
     let compiled = compiled.map_err(|list| {

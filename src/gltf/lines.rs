@@ -5,17 +5,15 @@
 
 use std::collections::BTreeMap;
 
-use gltf::json::accessor::{ComponentType, Type};
-use gltf::json::buffer::Target;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked as Valid;
 use gltf::json::{Accessor, Index, Root};
 
-use super::buffer::{Binary, Elements, accessor};
-use super::write::{index_width, put};
+use super::buffer::{Binary, index_accessors};
+use super::position::positions;
 use crate::geometry::mesh;
 use crate::geometry::mesh::Wire;
-use crate::scene::MeshUse;
+use crate::scene::{Grid, MeshUse};
 
 /// The lines of one origin, written.
 pub(super) struct Lines {
@@ -40,48 +38,17 @@ impl Lines {
 }
 
 /// Writes the positions of a wire, which all its primitives share, and the indices of each origin.
-pub(super) fn shared(root: &mut Root, binary: &mut Binary, wire: &Wire) -> Vec<Lines> {
+pub(super) fn shared(root: &mut Root, binary: &mut Binary, grid: Option<Grid>, wire: &Wire) -> Vec<Lines> {
     if wire.is_empty() {
         return Vec::new();
     }
-    let position = positions(root, binary, wire);
+    let position = positions(root, binary, grid, wire.points.iter().map(|point| point.position));
     let mut origins: Vec<u32> = wire.strands.iter().map(|strand| strand.origin).collect();
     origins.dedup();
-    let width = index_width(wire.points.len());
-    let start = binary.start();
-    let mut counts = Vec::new();
-    for &origin in &origins {
-        let before = binary.bytes.len();
-        for end in wire.segments(origin).flatten() {
-            binary.bytes.extend_from_slice(&end.to_le_bytes()[..width]);
-        }
-        counts.push((binary.bytes.len() - before) / width);
-    }
-    let view = binary.view(root, start, Some(Target::ElementArrayBuffer));
-    let component = if width == 2 { ComponentType::U16 } else { ComponentType::U32 };
-    let mut first = 0;
-    let mut all = Vec::with_capacity(origins.len());
-    for (origin, count) in origins.into_iter().zip(counts) {
-        let elements = Elements { component, shape: Type::Scalar, count };
-        let indices = root.push(accessor(view, first * width, elements, None));
-        all.push(Lines { origin, position, indices });
-        first += count;
-    }
-    all
-}
-
-fn positions(root: &mut Root, binary: &mut Binary, wire: &Wire) -> Index<Accessor> {
-    let start = binary.start();
-    let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    for point in &wire.points {
-        let position = (point.position.as_vec3() + 0.0).to_array();
-        for axis in 0..3 {
-            min[axis] = min[axis].min(position[axis]);
-            max[axis] = max[axis].max(position[axis]);
-        }
-        put(&mut binary.bytes, position);
-    }
-    let view = binary.view(root, start, Some(Target::ArrayBuffer));
-    let elements = Elements { component: ComponentType::F32, shape: Type::Vec3, count: wire.points.len() };
-    root.push(accessor(view, 0, elements, Some((min, max))))
+    let ends = |origin: &u32| wire.segments(*origin).flatten();
+    let counts = origins.iter().map(|origin| ends(origin).count());
+    let all = origins.iter().flat_map(ends);
+    let indices = index_accessors(root, binary, all, (wire.points.len(), true), counts);
+    let lines = |(origin, indices): (u32, Index<Accessor>)| Lines { origin, position, indices };
+    origins.iter().copied().zip(indices).map(lines).collect()
 }

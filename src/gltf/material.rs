@@ -9,7 +9,7 @@ use gltf::json::texture::{Info, MagFilter, MinFilter, Sampler, Texture as JsonTe
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root};
 
-use super::buffer::Binary;
+use super::buffer::{Binary, Content};
 use crate::geometry::mesh;
 use crate::geometry::number::single;
 use crate::scene::{AlphaMode, Filter, ImageKind, Material, Scene, Texture, Wrap};
@@ -19,7 +19,7 @@ pub(super) fn images(root: &mut Root, binary: &mut Binary, scene: &Scene) {
     for image in &scene.images {
         let start = binary.start();
         binary.bytes.extend_from_slice(&image.bytes);
-        let view = binary.view(root, start, None);
+        let view = binary.view(root, start, None, Content::Picture);
         let mime = match image.kind {
             ImageKind::Png => "image/png",
             ImageKind::Jpeg => "image/jpeg",

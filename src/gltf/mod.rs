@@ -2,16 +2,20 @@
 //!
 //! Promise: the bytes depend on the scene alone; positions shared in the scene are equal bits in the file;
 //! all primitives of a mesh share their vertex accessors and all its indices lie in one buffer view. The
-//! `core` profile requires no extension. Source: Khronos Group, glTF 2.0 Specification, 2021.
+//! `core` profile requires no extension. Source: Khronos Group, glTF 2.0 Specification, 2021; `KHR_mesh_quantization`,
+//! 2020; `EXT_meshopt_compression`, 2021.
 
 mod buffer;
 mod lines;
 mod material;
 mod motion;
+mod position;
+mod profile;
 mod read;
 mod read_motion;
 mod write;
 
+pub use profile::Profile;
 pub use read::{Geometry, Indices, Lines, Part, PositionBytes, Read, ReadError, read};
 pub use read_motion::{ReadAnimation, ReadChannel, ReadInfluences, ReadSkin};
 pub use write::{WriteError, Written, WrittenAnimation, WrittenGeometry, write};

@@ -8,7 +8,7 @@ use gltf::json::validation::Checked as Valid;
 use gltf::json::{Accessor, Animation, Index, Root, Skin, Value};
 use serde_json::json;
 
-use super::buffer::{Binary, Elements, accessor};
+use super::buffer::{Binary, Content, Elements, accessor};
 use super::write::put;
 use crate::geometry::mesh;
 use crate::geometry::number::single;
@@ -27,12 +27,12 @@ pub(super) fn carried(root: &mut Root, binary: &mut Binary, geometry: &Geometry)
     let elements =
         || Elements { component: ComponentType::U8, shape: Type::Vec4, count: geometry.mesh.vertices.len() };
     let of = |vertex: &mesh::Vertex| influences[vertex.point.subscript()];
-    let joints = binary.attribute(root, elements(), |bytes| {
+    let joints = binary.attribute(root, elements(), Content::Attributes { stride: 4 }, |bytes| {
         for vertex in &geometry.mesh.vertices {
             bytes.extend(of(vertex).map(|influence| influence.joint));
         }
     });
-    let weights = binary.attribute(root, elements(), |bytes| {
+    let weights = binary.attribute(root, elements(), Content::Attributes { stride: 4 }, |bytes| {
         for vertex in &geometry.mesh.vertices {
             bytes.extend(of(vertex).map(|influence| influence.weight));
         }
@@ -51,9 +51,10 @@ pub(super) fn skins(root: &mut Root, binary: &mut Binary, scene: &Scene) {
             None => {
                 let start = binary.start();
                 for map in &skin.inverse_bind {
-                    put(&mut binary.bytes, glam::DMat4::from(*map).as_mat4().to_cols_array());
+                    let map = scene.grid.map_or(*map, |grid| *map * grid.affine());
+                    put(&mut binary.bytes, glam::DMat4::from(map).as_mat4().to_cols_array());
                 }
-                let view = binary.view(root, start, None);
+                let view = binary.view(root, start, None, Content::Attributes { stride: 64 });
                 let count = skin.inverse_bind.len();
                 let elements = Elements { component: ComponentType::F32, shape: Type::Mat4, count };
                 let accessor = root.push(accessor(view, 0, elements, None));
@@ -133,7 +134,7 @@ fn target(channel: &scene::Channel, sampler: Index<Sampler>) -> Channel {
 fn times(root: &mut Root, binary: &mut Binary, times: &[f64]) -> Index<Accessor> {
     let start = binary.start();
     times.iter().for_each(|time| put(&mut binary.bytes, [single(*time)]));
-    let view = binary.view(root, start, None);
+    let view = binary.view(root, start, None, Content::Attributes { stride: 4 });
     let elements = Elements { component: ComponentType::F32, shape: Type::Scalar, count: times.len() };
     let mut made = accessor(view, 0, elements, None);
     let bound = |time: Option<&f64>| time.map(|time| Value::from(vec![single(*time)]));
@@ -153,7 +154,7 @@ fn values(root: &mut Root, binary: &mut Binary, channel: &scene::Channel) -> Ind
             put(&mut binary.bytes, value.truncate().to_array());
         }
     }
-    let view = binary.view(root, start, None);
+    let view = binary.view(root, start, None, Content::Attributes { stride: if wide { 16 } else { 12 } });
     let shape = if wide { Type::Vec4 } else { Type::Vec3 };
     let elements = Elements { component: ComponentType::F32, shape, count: channel.values.len() };
     root.push(accessor(view, 0, elements, None))

@@ -1,11 +1,12 @@
 //! The triangles and lines in the bytes of a `.glb` file, for the report and for `inspect`.
 //!
-//! Finds float positions and indices of triangles; every offset and count is checked against the bytes. What stands
+//! Finds positions, floats or on the grid of the file, and indices of triangles; every offset and count is checked against the bytes. What stands
 //! together in the file, as our own writer has it, stays where it is; only what other writers scatter is copied.
 
 use std::borrow::Cow;
 use std::ops::Range;
 
+use glam::DVec3;
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::mesh::{Mode, Semantic};
 use gltf::json::validation::Checked;
@@ -13,7 +14,8 @@ use gltf::json::{Accessor, Index, Root};
 use thiserror::Error;
 
 use crate::geometry::mesh;
-use crate::geometry::number::size;
+use crate::geometry::number::{single, size};
+use crate::scene::Grid;
 
 /// A file, read.
 #[derive(Clone, Debug)]
@@ -24,6 +26,8 @@ pub struct Read<'a> {
     pub geometries: Vec<Geometry<'a>>,
     /// The binary chunk.
     pub binary: &'a [u8],
+    /// The grid of its positions, which are read in metres.
+    pub grid: Option<Grid>,
 }
 
 /// A position as it stands in a file: three little-endian floats.
@@ -99,8 +103,7 @@ impl Geometry<'_> {
     /// The position of a vertex.
     #[must_use]
     pub fn position(&self, vertex: usize) -> [f32; 3] {
-        let (words, _) = self.positions[vertex].as_chunks::<4>();
-        [words[0], words[1], words[2]].map(f32::from_le_bytes)
+        floats(self.positions[vertex])
     }
 }
 
@@ -136,22 +139,58 @@ pub enum ReadError {
     Vertex(usize, u32),
 }
 
-/// Reads the triangles of every mesh.
+/// Reads the triangles of every mesh. Compressed files are unpacked before (`packing::unpacked`); in one whose positions
+/// lie on a grid each mesh is shown by the node that was made to show it.
 ///
 /// # Errors
-/// When the file is broken or holds what is not read here (compressed or quantized data, other primitives).
+/// When the file is broken or holds what is not read here (compressed data, whole numbers without a grid that Kiln
+/// wrote, other primitives).
 pub fn read(bytes: &[u8]) -> Result<Read<'_>, ReadError> {
     let container = gltf::Glb::from_slice(bytes).map_err(|error| ReadError::Container(error.to_string()))?;
-    let root: Root =
+    let mut root: Root =
         serde_json::from_slice(&container.json).map_err(|error| ReadError::Json(error.to_string()))?;
     let binary = match container.bin {
         Some(Cow::Borrowed(binary)) => binary,
         _ => &[],
     };
-    let geometries: Result<Vec<_>, _> =
-        (0..root.meshes.len()).map(|mesh| geometry(&root, binary, mesh)).collect();
+    let grid = Grid::of(&root);
+    let data = Data { root: &root, binary, grid };
+    let geometries: Result<Vec<_>, _> = (0..root.meshes.len()).map(|mesh| geometry(data, mesh)).collect();
     let geometries = geometries?;
-    Ok(Read { root, geometries, binary })
+    if let Some(grid) = grid {
+        drop_carriers(&mut root, grid);
+    }
+    Ok(Read { root, geometries, binary, grid })
+}
+
+#[derive(Clone, Copy)]
+struct Data<'r, 'a> {
+    root: &'r Root,
+    binary: &'a [u8],
+    grid: Option<Grid>,
+}
+
+/// Takes away the nodes that only take a mesh from the grid to metres: the last ones, each below the one that shows it.
+fn drop_carriers(root: &mut Root, grid: Grid) {
+    let (step, offset) = (single(grid.step), grid.offset.as_vec3().to_array());
+    let carries = |node: &gltf::json::Node| {
+        let plain = node.name.is_none() && node.children.is_none() && node.rotation.is_none();
+        node.mesh.filter(|_| plain && node.scale == Some([step; 3]) && node.translation == Some(offset))
+    };
+    while let Some((last, mesh)) =
+        root.nodes.last().and_then(|node| Some((root.nodes.len() - 1, carries(node)?)))
+    {
+        let above =
+            |node: &gltf::json::Node| node.children.iter().flatten().any(|child| child.value() == last);
+        let Some(shows) = root.nodes.iter_mut().find(|node| above(node) && node.mesh.is_none()) else {
+            return;
+        };
+        shows.mesh = Some(mesh);
+        let left: Vec<_> =
+            shows.children.take().into_iter().flatten().filter(|child| child.value() != last).collect();
+        shows.children = (!left.is_empty()).then_some(left);
+        root.nodes.pop();
+    }
 }
 
 /// Where the elements of an accessor stand.
@@ -184,12 +223,13 @@ struct Primitive {
     indices: Option<Elements>,
 }
 
-fn geometry<'a>(root: &Root, binary: &'a [u8], mesh: usize) -> Result<Geometry<'a>, ReadError> {
+fn geometry<'a>(data: Data<'_, 'a>, mesh: usize) -> Result<Geometry<'a>, ReadError> {
+    let Data { root, binary, .. } = data;
     let mut clouds: Vec<(usize, u32, Elements)> = Vec::new();
     let mut primitives = Vec::new();
     let mut parts = Vec::new();
     let mut vertices = 0_u32;
-    let lines = lines(root, binary, mesh)?;
+    let lines = lines(data, mesh)?;
     for primitive in &root.meshes[mesh].primitives {
         if primitive.mode == Checked::Valid(Mode::Lines) {
             continue;
@@ -204,7 +244,7 @@ fn geometry<'a>(root: &Root, binary: &'a [u8], mesh: usize) -> Result<Geometry<'
         let (base, own) = match known {
             Some((_, base, cloud)) => (*base, mesh::index(cloud.count)),
             None => {
-                let cloud = positions(root, binary, *position)?;
+                let cloud = positions(data, *position)?;
                 let (base, own) = (vertices, mesh::index(cloud.count));
                 vertices = vertices.checked_add(own).ok_or(ReadError::Range(position.value()))?;
                 clouds.push((position.value(), base, cloud));
@@ -223,7 +263,7 @@ fn geometry<'a>(root: &Root, binary: &'a [u8], mesh: usize) -> Result<Geometry<'
         });
         primitives.push(Primitive { base, vertices: own, indices });
     }
-    let positions = gathered_positions(binary, &clouds);
+    let positions = gathered_positions(data, &clouds);
     let missing = |index: u32| ReadError::Vertex(mesh, index);
     let indices = gathered_indices(binary, &primitives).map_err(missing)?;
     match indices.greatest().filter(|index| *index >= vertices) {
@@ -233,7 +273,8 @@ fn geometry<'a>(root: &Root, binary: &'a [u8], mesh: usize) -> Result<Geometry<'
 }
 
 /// The lines of a mesh; positions that primitives share are read once.
-fn lines(root: &Root, binary: &[u8], mesh: usize) -> Result<Lines, ReadError> {
+fn lines(data: Data<'_, '_>, mesh: usize) -> Result<Lines, ReadError> {
+    let Data { root, binary, .. } = data;
     let mut all = Lines::default();
     let mut clouds: Vec<(usize, u32, u32)> = Vec::new();
     for primitive in &root.meshes[mesh].primitives {
@@ -246,12 +287,9 @@ fn lines(root: &Root, binary: &[u8], mesh: usize) -> Result<Lines, ReadError> {
         let (_, base, count) = match known {
             Some(known) => known,
             None => {
-                let cloud = positions(root, binary, *position)?;
+                let cloud = positions(data, *position)?;
                 let made = (position.value(), mesh::index(all.positions.len()), mesh::index(cloud.count));
-                let floats = |element: &[u8]| {
-                    let (words, _) = element.as_chunks::<4>();
-                    [words[0], words[1], words[2]].map(f32::from_le_bytes)
-                };
+                let floats = |element: &[u8]| floats(metres(element, data.grid));
                 all.positions.extend(cloud.each(binary).map(floats));
                 clouds.push(made);
                 made
@@ -282,15 +320,38 @@ fn lines(root: &Root, binary: &[u8], mesh: usize) -> Result<Lines, ReadError> {
     Ok(all)
 }
 
-/// Positions of all accessors, one after the other; those of a single tight one stay in place.
-fn gathered_positions<'a>(binary: &'a [u8], clouds: &[(usize, u32, Elements)]) -> Cow<'a, [PositionBytes]> {
+fn floats(position: PositionBytes) -> [f32; 3] {
+    let (words, _) = position.as_chunks::<4>();
+    [words[0], words[1], words[2]].map(f32::from_le_bytes)
+}
+
+/// A position in metres: floats as they stand, whole numbers by the grid.
+fn metres(element: &[u8], grid: Option<Grid>) -> PositionBytes {
+    if let (Some(grid), [x, x_high, y, y_high, z, z_high]) = (grid, element) {
+        let place =
+            [[*x, *x_high], [*y, *y_high], [*z, *z_high]].map(|part| f64::from(u16::from_le_bytes(part)));
+        let position = (DVec3::from_array(place) * grid.step + grid.offset).as_vec3();
+        return words(position.to_array());
+    }
+    element.first_chunk().copied().unwrap_or_default()
+}
+
+fn words(position: [f32; 3]) -> PositionBytes {
+    let mut bytes = [0; 12];
+    bytes.copy_from_slice(position.map(f32::to_le_bytes).as_flattened());
+    bytes
+}
+
+/// Positions of all accessors, one after the other; those of a single tight one of floats stay in place.
+fn gathered_positions<'a>(data: Data<'_, 'a>, clouds: &[(usize, u32, Elements)]) -> Cow<'a, [PositionBytes]> {
     if let [(.., cloud)] = clouds
         && cloud.tight()
+        && cloud.width == size_of::<PositionBytes>()
     {
-        return Cow::Borrowed(binary[cloud.range.clone()].as_chunks().0);
+        return Cow::Borrowed(data.binary[cloud.range.clone()].as_chunks().0);
     }
-    let all = clouds.iter().flat_map(|(.., cloud)| cloud.each(binary));
-    Cow::Owned(all.map(|element| element.as_chunks().0[0]).collect())
+    let all = clouds.iter().flat_map(|(.., cloud)| cloud.each(data.binary));
+    Cow::Owned(all.map(|element| metres(element, data.grid)).collect())
 }
 
 /// Indices of all primitives, one after the other; those that stand so in the file stay in place, and are not looked
@@ -379,11 +440,14 @@ pub(super) fn kind(root: &Root, index: Index<Accessor>) -> Option<(ComponentType
     }
 }
 
-fn positions(root: &Root, binary: &[u8], index: Index<Accessor>) -> Result<Elements, ReadError> {
-    if kind(root, index) != Some((ComponentType::F32, Type::Vec3)) {
-        return Err(ReadError::Unsupported(format!("accessor {} as positions", index.value())));
+fn positions(data: Data<'_, '_>, index: Index<Accessor>) -> Result<Elements, ReadError> {
+    match kind(data.root, index) {
+        Some((ComponentType::F32, Type::Vec3)) => elements(data.root, data.binary, index, 12),
+        Some((ComponentType::U16, Type::Vec3)) if data.grid.is_some() => {
+            elements(data.root, data.binary, index, 6)
+        }
+        _ => Err(ReadError::Unsupported(format!("accessor {} as positions", index.value()))),
     }
-    elements(root, binary, index, 12)
 }
 
 fn indices(root: &Root, binary: &[u8], index: Index<Accessor>) -> Result<Elements, ReadError> {

@@ -56,7 +56,9 @@ impl Read<'_> {
             let matrices = skin.inverse_bind_matrices;
             let matrices = matrices.ok_or_else(|| ReadError::Missing("inverse bind matrices".to_owned()))?;
             let rows = self.floats::<16>(matrices, Type::Mat4)?;
-            let matrix = |row: &[f32; 16]| Mat4::from_cols_array(row).as_dmat4();
+            // Positions are read in metres: the way from the grid to them is taken out again.
+            let from_metres = self.grid.map_or(DMat4::IDENTITY, |grid| DMat4::from(grid.affine().inverse()));
+            let matrix = |row: &[f32; 16]| Mat4::from_cols_array(row).as_dmat4() * from_metres;
             Ok(ReadSkin {
                 joints: skin.joints.iter().map(|joint| joint.value()).collect(),
                 inverse_bind: rows.iter().map(matrix).collect(),

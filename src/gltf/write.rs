@@ -2,21 +2,24 @@
 
 use std::collections::BTreeMap;
 
+use glam::DVec4;
 use gltf::json::accessor::{ComponentType, Type};
-use gltf::json::buffer::{Buffer, Target};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::scene::UnitQuaternion;
-use gltf::json::validation::{Checked as Valid, USize64};
+use gltf::json::validation::Checked as Valid;
 use gltf::json::{Accessor, Asset, Index, Mesh, Node, Root, Scene};
 use thiserror::Error;
 
-use super::buffer::{Binary, Elements, accessor};
+use super::buffer::{Binary, Content, Elements, at, index_accessors, index_width};
+use super::position::positions;
+use super::profile::Profile;
 use super::{lines, material, motion};
 use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
-use crate::geometry::number::size;
+use crate::geometry::number::{floor_count, single, size};
 use crate::geometry::tessellate::Deviation;
-use crate::scene::{Checked, Geometry};
+use crate::packing::{octahedral, signed_byte};
+use crate::scene::{Checked, Geometry, Grid};
 
 /// The bytes of a file and what only its writer knows of them.
 #[derive(Clone, Debug)]
@@ -67,24 +70,30 @@ pub enum WriteError {
     TooLarge(u64),
 }
 
-/// Writes a scene. With `anchors`, the places of all vertices on their sources are kept beside the bytes.
+/// Writes a scene for a profile; a scene on a grid for one that is quantized. With `anchors`, the places of all vertices on their sources are kept beside the bytes.
 ///
 /// Cost: one pass over the scene; the bytes are allocated once.
 ///
 /// # Errors
 /// When the file would pass 4 GiB.
-pub fn write(checked: Checked<'_>, anchors: bool) -> Result<Written, WriteError> {
+pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Written, WriteError> {
     let scene = checked.scene();
     let mut writer = Writer {
-        root: Root { asset: asset(), ..Root::default() },
-        binary: Binary { bytes: Vec::with_capacity(binary_size(checked)) },
+        root: Root { asset: asset(scene.grid), ..Root::default() },
+        binary: Binary::new(binary_size(checked), profile.is_compressed()),
+        small: profile.is_quantized(),
+        grid: scene.grid,
     };
+    if writer.small {
+        writer.root.extensions_used.push(QUANTIZATION.to_owned());
+        writer.root.extensions_required.push(QUANTIZATION.to_owned());
+    }
     let shared: Vec<_> = scene
         .geometries
         .iter()
         .map(|geometry| {
             let triangles = (!geometry.mesh.triangles.is_empty()).then(|| writer.geometry(geometry));
-            (triangles, lines::shared(&mut writer.root, &mut writer.binary, &geometry.wire))
+            (triangles, lines::shared(&mut writer.root, &mut writer.binary, scene.grid, &geometry.wire))
         })
         .collect();
     material::images(&mut writer.root, &mut writer.binary, scene);
@@ -119,8 +128,12 @@ pub fn write(checked: Checked<'_>, anchors: bool) -> Result<Written, WriteError>
     Ok(Written { bytes: writer.finish()?, geometries, animations })
 }
 
-fn asset() -> Asset {
+/// The extension that allows attributes of whole numbers.
+const QUANTIZATION: &str = "KHR_mesh_quantization";
+
+fn asset(grid: Option<Grid>) -> Asset {
     Asset {
+        extras: grid.and_then(|grid| serde_json::value::to_raw_value(&grid.extras()).ok()),
         generator: Some(concat!("Kiln ", env!("CARGO_PKG_VERSION")).to_owned()),
         version: "2.0".to_owned(),
         ..Asset::default()
@@ -148,11 +161,6 @@ fn binary_size(checked: Checked<'_>) -> usize {
     scene.geometries.iter().map(geometry).sum::<usize>() + images + json + channels.sum::<usize>() + bind
 }
 
-/// Bytes of an index: 0xFFFF restarts primitives and is no vertex.
-pub(super) fn index_width(vertices: usize) -> usize {
-    if vertices <= 0xFFFF { 2 } else { 4 }
-}
-
 /// Accessors that all meshes of a geometry share.
 struct Shared {
     position: Index<Accessor>,
@@ -167,34 +175,30 @@ struct Shared {
 struct Writer {
     root: Root,
     binary: Binary,
+    /// Whether attributes are whole numbers.
+    small: bool,
+    grid: Option<Grid>,
 }
 
 impl Writer {
     fn geometry(&mut self, geometry: &Geometry) -> Shared {
         let mesh = &geometry.mesh;
-        let count = mesh.vertices.len();
-        let floats = |shape: Type| Elements { component: ComponentType::F32, shape, count };
         let (root, binary) = (&mut self.root, &mut self.binary);
-        let position = positions(root, binary, geometry);
-        let normal = binary.attribute(root, floats(Type::Vec3), |bytes| {
-            for vertex in &mesh.vertices {
-                put(bytes, vertex.normal.as_vec3().to_array());
-            }
-        });
+        let places = mesh.vertices.iter().map(|vertex| mesh.points[vertex.point.subscript()]);
+        let position = positions(root, binary, self.grid, places);
+        let directions = Directions { small: self.small, count: mesh.vertices.len() };
+        let normals = mesh.vertices.iter().map(|vertex| vertex.normal.extend(0.0));
+        let normal = directions.write(root, binary, Type::Vec3, normals);
         let tangent = geometry.tangents.as_ref().map(|tangents| {
-            binary.attribute(root, floats(Type::Vec4), |bytes| {
-                tangents.iter().for_each(|part| put(bytes, *part))
-            })
+            let wide = tangents.iter().map(|tangent| glam::Vec4::from_array(*tangent).as_dvec4());
+            directions.write(root, binary, Type::Vec4, wide)
         });
-        let uv = geometry.uv.then(|| {
-            binary.attribute(root, floats(Type::Vec2), |bytes| {
-                for vertex in &mesh.vertices {
-                    put(bytes, vertex.uv.as_vec2().to_array());
-                }
-            })
-        });
+        let uv = geometry.uv.then(|| uvs(root, binary, mesh, self.small));
         let carried = motion::carried(root, binary, geometry);
-        let indices = indices(root, binary, geometry);
+        let ends = [0].into_iter().chain(mesh.runs.iter().map(|run| run.end));
+        let counts = ends.zip(&mesh.runs).map(|(start, run)| (run.end - start) as usize * 3);
+        let all = mesh.triangles.iter().flatten().map(|vertex| vertex.0);
+        let indices = index_accessors(root, binary, all, (mesh.vertices.len(), false), counts);
         Shared { position, normal, tangent, uv, carried, indices }
     }
 
@@ -255,8 +259,10 @@ impl Writer {
             };
             scene.nodes.iter().enumerate().filter_map(of).collect()
         };
+        let carriers = self.carriers(scene);
         for (index, node) in scene.nodes.iter().enumerate() {
-            let below = children(Some(index));
+            let mut below = children(Some(index));
+            below.extend(carriers.iter().find(|(shown, _)| *shown == index).map(|(_, carrier)| *carrier));
             let plain = |vector: glam::DVec3, rest: glam::DVec3| {
                 (vector != rest).then(|| vector.as_vec3().to_array())
             };
@@ -266,7 +272,7 @@ impl Writer {
                 extensions: None,
                 extras: node.socket.then(motion::socket).flatten(),
                 matrix: None,
-                mesh: node.mesh.map(|mesh| Index::new(mesh::index(mesh))),
+                mesh: node.mesh.filter(|_| self.grid.is_none() || node.skin.is_some()).map(at),
                 name: Some(node.name.clone()),
                 rotation: (node.rotation != glam::DQuat::IDENTITY)
                     .then(|| UnitQuaternion(node.rotation.as_quat().to_array())),
@@ -276,23 +282,39 @@ impl Writer {
                 weights: None,
             });
         }
+        self.push_carriers(scene, &carriers);
         let nodes = children(None);
         let scene =
             self.root.push(Scene { extensions: None, extras: None, name: Some(scene.name.clone()), nodes });
         self.root.scene = Some(scene);
     }
 
+    /// For each node whose mesh needs one, the node below it that takes the mesh from the grid to metres. They stand
+    /// after all others, so that the others keep their places.
+    fn carriers(&self, scene: &crate::scene::Scene) -> Vec<(usize, Index<Node>)> {
+        let shown =
+            scene.nodes.iter().enumerate().filter(|(_, node)| node.mesh.is_some() && node.skin.is_none());
+        let own = shown.filter(|_| self.grid.is_some()).map(|(index, _)| index);
+        own.enumerate().map(|(place, index)| (index, at(scene.nodes.len() + place))).collect()
+    }
+
+    fn push_carriers(&mut self, scene: &crate::scene::Scene, carriers: &[(usize, Index<Node>)]) {
+        let Some(grid) = self.grid else { return };
+        for (shown, _) in carriers {
+            self.root.push(Node {
+                mesh: scene.nodes[*shown].mesh.map(at),
+                scale: Some([single(grid.step); 3]),
+                translation: Some(grid.offset.as_vec3().to_array()),
+                ..Node::default()
+            });
+        }
+    }
+
     /// Header, JSON chunk and binary chunk.
     fn finish(mut self) -> Result<Vec<u8>, WriteError> {
         self.binary.start();
+        self.binary.buffers(&mut self.root);
         let binary = self.binary.bytes;
-        self.root.buffers.push(Buffer {
-            byte_length: USize64::from(binary.len()),
-            name: None,
-            uri: None,
-            extensions: None,
-            extras: None,
-        });
         let mut json =
             serde_json::to_vec(&self.root).expect("a glTF document has no map with other keys than text");
         json.resize(json.len().next_multiple_of(4), b' ');
@@ -322,46 +344,72 @@ pub(super) fn put<const N: usize>(bytes: &mut Vec<u8>, numbers: [f32; N]) {
     bytes.extend_from_slice(words.as_flattened());
 }
 
-fn positions(root: &mut Root, binary: &mut Binary, geometry: &Geometry) -> Index<Accessor> {
-    let mesh = &geometry.mesh;
-    let start = binary.start();
-    let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    for vertex in &mesh.vertices {
-        let position = (mesh.points[vertex.point.0 as usize].as_vec3() + 0.0).to_array();
-        for axis in 0..3 {
-            min[axis] = min[axis].min(position[axis]);
-            max[axis] = max[axis].max(position[axis]);
-        }
-        put(&mut binary.bytes, position);
-    }
-    let view = binary.view(root, start, Some(Target::ArrayBuffer));
-    let elements = Elements { component: ComponentType::F32, shape: Type::Vec3, count: mesh.vertices.len() };
-    root.push(accessor(view, 0, elements, Some((min, max))))
+/// Unit vectors: floats, or bytes.
+#[derive(Clone, Copy)]
+struct Directions {
+    small: bool,
+    count: usize,
 }
 
-fn indices(root: &mut Root, binary: &mut Binary, geometry: &Geometry) -> Vec<Index<Accessor>> {
-    let mesh = &geometry.mesh;
-    let width = index_width(mesh.vertices.len());
-    let start = binary.start();
-    for triangle in &mesh.triangles {
-        if width == 2 {
-            // The two low bytes are all: the greatest vertex is below 0xFFFF.
-            let words = triangle.map(|vertex| vertex.0.to_le_bytes()).map(|[low, high, ..]| [low, high]);
-            binary.bytes.extend_from_slice(words.as_flattened());
-        } else {
-            let words = triangle.map(|vertex| vertex.0.to_le_bytes());
-            binary.bytes.extend_from_slice(words.as_flattened());
+impl Directions {
+    fn write(
+        self,
+        root: &mut Root,
+        binary: &mut Binary,
+        shape: Type,
+        all: impl Iterator<Item = DVec4>,
+    ) -> Index<Accessor> {
+        let count = self.count;
+        if !self.small {
+            let floats = Elements { component: ComponentType::F32, shape, count };
+            let wide = shape == Type::Vec4;
+            let content = Content::Attributes { stride: if wide { 16 } else { 12 } };
+            return binary.attribute(root, floats, content, |bytes| {
+                for vector in all {
+                    let vector = vector.as_vec4();
+                    if wide {
+                        put(bytes, vector.to_array());
+                    } else {
+                        put(bytes, vector.truncate().to_array());
+                    }
+                }
+            });
         }
+        let elements = Elements { component: ComponentType::I8, shape, count };
+        let folded = binary.is_compressed();
+        let content = if folded { Content::Directions } else { Content::Attributes { stride: 4 } };
+        let made = binary.attribute(root, elements, content, |bytes| {
+            for vector in all {
+                let [x, y, z, w] = vector.to_array();
+                let vector = if folded { octahedral([x, y, z], w) } else { [x, y, z, w].map(signed_byte) };
+                bytes.extend(vector.map(i8::cast_unsigned));
+            }
+        });
+        root.accessors[made.value()].normalized = true;
+        made
     }
-    let view = binary.view(root, start, Some(Target::ElementArrayBuffer));
-    let component = if width == 2 { ComponentType::U16 } else { ComponentType::U32 };
-    let mut first = 0;
-    let mut accessors = Vec::with_capacity(mesh.runs.len());
-    for run in &mesh.runs {
-        let elements = Elements { component, shape: Type::Scalar, count: (run.end - first) as usize * 3 };
-        let offset = first as usize * 3 * width;
-        accessors.push(root.push(accessor(view, offset, elements, None)));
-        first = run.end;
+}
+
+/// Texture coordinates: floats, or 16 bits where all lie in the unit square.
+fn uvs(root: &mut Root, binary: &mut Binary, mesh: &mesh::Mesh, small: bool) -> Index<Accessor> {
+    let count = mesh.vertices.len();
+    let inside = |vertex: &mesh::Vertex| vertex.uv.min_element() >= 0.0 && vertex.uv.max_element() <= 1.0;
+    if !(small && mesh.vertices.iter().all(inside)) {
+        let floats = Elements { component: ComponentType::F32, shape: Type::Vec2, count };
+        return binary.attribute(root, floats, Content::Attributes { stride: 8 }, |bytes| {
+            for vertex in &mesh.vertices {
+                put(bytes, vertex.uv.as_vec2().to_array());
+            }
+        });
     }
-    accessors
+    let elements = Elements { component: ComponentType::U16, shape: Type::Vec2, count };
+    let made = binary.attribute(root, elements, Content::Attributes { stride: 4 }, |bytes| {
+        for vertex in &mesh.vertices {
+            let share = |part: f64| u16::try_from(floor_count((part * 65535.0).round())).unwrap_or(u16::MAX);
+            bytes
+                .extend_from_slice(vertex.uv.to_array().map(|part| share(part).to_le_bytes()).as_flattened());
+        }
+    });
+    root.accessors[made.value()].normalized = true;
+    made
 }

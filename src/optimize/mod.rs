@@ -2,16 +2,45 @@
 
 mod band;
 mod compact;
+mod grid;
 mod order;
 mod tangent;
 
 use crate::scene::Scene;
 
+pub use grid::{GRID_SHARE, TooCoarse};
+
+/// What positions are rounded to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rounding {
+    /// Single precision.
+    Single,
+    /// The finest grid of 16 bits.
+    Fine,
+    /// The coarsest grid of at most 16 bits that stays within [`GRID_SHARE`] of the tolerance.
+    Coarse,
+}
+
 /// Runs all passes in order.
-pub fn run(scene: &mut Scene) {
-    for geometry in &mut scene.geometries {
-        compact::compact(&mut geometry.mesh, geometry.influences.as_mut());
-    }
+///
+/// # Errors
+/// When the scene is too large for a grid to be within its tolerance; positions are then left as they are.
+pub fn run(scene: &mut Scene, rounding: Rounding) -> Result<(), TooCoarse> {
+    let compacted = |scene: &mut Scene| {
+        for geometry in &mut scene.geometries {
+            compact::compact(&mut geometry.mesh, geometry.influences.as_mut());
+        }
+    };
+    compacted(scene);
+    let snapped = match rounding {
+        Rounding::Single => Ok(()),
+        Rounding::Fine | Rounding::Coarse => {
+            let snapped = grid::snap(scene, rounding == Rounding::Coarse);
+            compacted(scene);
+            snapped
+        }
+    };
     tangent::tangents(scene);
     scene.geometries.iter_mut().for_each(order::order);
+    snapped
 }

@@ -83,7 +83,8 @@ fn order_piece(piece: &mut [[VertexIndex; 3]], places: Places<'_>) -> u32 {
     let local = Local::of(piece);
     let mut cache = Cache::new(local.len());
     let bands = bands(piece);
-    let mut misses: u32 = bands.triangles.iter().map(|at| cache.misses(at.map(|vertex| local.name(vertex)))).sum();
+    let mut misses: u32 =
+        bands.triangles.iter().map(|at| cache.misses(at.map(|vertex| local.name(vertex)))).sum();
     let (ordered, clusters) = if f64::from(misses) <= GOOD * piece.len() as f64 {
         (bands.triangles, bands.clusters)
     } else {
@@ -105,10 +106,7 @@ fn order_piece(piece: &mut [[VertexIndex; 3]], places: Places<'_>) -> u32 {
 /// Short names for the vertices of a piece, so that tables of them are small.
 enum Local {
     /// They lie close together: counted from the first.
-    Near {
-        first: u32,
-        len: usize,
-    },
+    Near { first: u32, len: usize },
     /// They are scattered: their places among those that are used.
     Far(Vec<u32>),
 }
@@ -212,7 +210,8 @@ fn outward_first(
         .into_iter()
         .zip(clusters)
         .map(|((centroid, normal, area), cluster)| {
-            let outward = (centroid / f64::max(area, f64::MIN_POSITIVE) - middle).dot(normal.normalize_or_zero());
+            let outward =
+                (centroid / f64::max(area, f64::MIN_POSITIVE) - middle).dot(normal.normalize_or_zero());
             (outward, cluster)
         })
         .collect();

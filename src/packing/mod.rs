@@ -7,11 +7,20 @@
 //!
 //! Source: A. Kapoulkine, meshoptimizer 1.3, 2026.
 
+mod codec;
+mod filter;
 mod order;
 mod tangent;
+mod unpack;
 
+pub use codec::{
+    decode_attributes, decode_sequence, decode_triangles, encode_attributes, encode_sequence,
+    encode_triangles,
+};
+pub use filter::{Filter, octahedral, signed_byte};
 pub use order::order_for_cache;
 pub use tangent::corner_tangents;
+pub use unpack::{EXTENSION, UnpackError, unpacked};
 
 /// Whether all indices are below a count, and make whole triangles.
 fn whole_triangles(indices: &[u32], vertices: usize) -> bool {

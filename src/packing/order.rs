@@ -22,7 +22,8 @@ mod tests {
 
     #[test]
     fn every_triangle_stays_with_its_turn() {
-        let mut indices: Vec<u32> = (0..40).flat_map(|at| [at * 7 % 41, (at * 7 + 1) % 41, 41 + at % 3]).collect();
+        let mut indices: Vec<u32> =
+            (0..40).flat_map(|at| [at * 7 % 41, (at * 7 + 1) % 41, 41 + at % 3]).collect();
         let sorted = |indices: &[u32]| {
             let turned = |triangle: &[u32; 3]| {
                 let least = (0..3).min_by_key(|corner| triangle[*corner]).unwrap_or(0);

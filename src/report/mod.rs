@@ -30,8 +30,9 @@ use serde::Serialize;
 use crate::geometry::mesh::polygon_facts::PolygonFacts;
 use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::Evidence;
-use crate::gltf::{Geometry, Indices, Read, ReadError, Written, WrittenGeometry, read};
+use crate::gltf::{Geometry, Indices, Profile, Read, ReadError, Written, WrittenGeometry, read};
 use crate::model::{Model, ShapeHandle};
+use crate::packing::{UnpackError, unpacked};
 use facts::{Box3, FactsError, LineFacts, MeshFacts, measure_lines};
 use thiserror::Error;
 
@@ -49,6 +50,9 @@ pub struct Report {
     pub variant: Option<String>,
     /// Output profile.
     pub profile: &'static str,
+    /// The grid that all positions lie on, where they are whole numbers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grid: Option<GridFacts>,
     /// The file.
     pub file: FileFacts,
     /// Sums over the file.
@@ -93,6 +97,16 @@ pub struct FileFacts {
     pub bytes: u64,
     /// Its BLAKE3 hash in hexadecimal digits.
     pub blake3: String,
+}
+
+/// A grid of positions.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct GridFacts {
+    /// From line to line, metres.
+    pub step: f64,
+    /// Its first point, metres.
+    pub offset: [f64; 3],
 }
 
 /// Sums over the file.
@@ -205,6 +219,8 @@ pub struct About<'a> {
     pub spec: &'a str,
     /// The variant of the document.
     pub variant: Option<&'a str>,
+    /// For whom the file is.
+    pub profile: Profile,
     /// Name of the written file.
     pub file: &'a str,
     /// Whether the deviation is measured by dense sampling.
@@ -214,6 +230,9 @@ pub struct About<'a> {
 /// Why a file cannot be measured: a bug of the writer, or more triangles than can be counted.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ReportError {
+    /// The bytes cannot be unpacked.
+    #[error(transparent)]
+    Unpack(#[from] UnpackError),
     /// The bytes cannot be read back.
     #[error(transparent)]
     Read(#[from] ReadError),
@@ -232,7 +251,8 @@ pub fn measure(
     shapes: &[ShapeHandle],
     about: &About<'_>,
 ) -> Result<Report, ReportError> {
-    let file = read(&written.bytes)?;
+    let plain = unpacked(&written.bytes)?;
+    let file = read(&plain)?;
     let mut facts = IndexMap::new();
     for (known, handle) in written.geometries.iter().zip(shapes) {
         let measured =
@@ -247,7 +267,8 @@ pub fn measure(
         asset: model.name.clone(),
         spec: about.spec.to_owned(),
         variant: about.variant.map(str::to_owned),
-        profile: "core",
+        profile: about.profile.name(),
+        grid: file.grid.map(|grid| GridFacts { step: grid.step, offset: grid.offset.to_array() }),
         file: FileFacts {
             name: about.file.to_owned(),
             bytes: written.bytes.len() as u64,

@@ -49,6 +49,9 @@ pub enum SceneError {
     /// A normal or tangent is not of unit length.
     #[error("shape `{0}` has a {1} that is not of unit length")]
     NotUnit(String, &'static str),
+    /// A position is not on the grid of the scene.
+    #[error("shape `{0}` has a coordinate that is not on the grid of the model")]
+    OffGrid(String),
     /// An index points at nothing.
     #[error("{0} refers to something that does not exist")]
     Dangling(String),
@@ -85,6 +88,7 @@ pub fn check(scene: &Scene) -> Result<Checked<'_>, SceneError> {
     }
     for geometry in &scene.geometries {
         check_geometry(geometry)?;
+        check_grid(scene, geometry)?;
     }
     for mesh in &scene.meshes {
         check_use(scene, mesh)?;
@@ -142,6 +146,16 @@ fn check_geometry(geometry: &Geometry) -> Result<(), SceneError> {
     }
     check_runs(geometry)?;
     check_tangents(geometry)
+}
+
+fn check_grid(scene: &Scene, geometry: &Geometry) -> Result<(), SceneError> {
+    let Some(grid) = scene.grid else { return Ok(()) };
+    let lines = geometry.wire.points.iter().map(|point| point.position);
+    let mut all = geometry.mesh.points.iter().copied().chain(lines);
+    match all.find(|point| grid.place(*point).is_none()) {
+        Some(_) => Err(SceneError::OffGrid(geometry.name.clone())),
+        None => Ok(()),
+    }
 }
 
 fn check_wire(geometry: &Geometry) -> Result<(), SceneError> {

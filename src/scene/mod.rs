@@ -14,6 +14,7 @@ pub use crate::model::{AlphaMode, Filter, Image, ImageKind, Material, Texture, W
 use glam::{DQuat, DVec3};
 
 use crate::geometry::mesh::{Mesh, Wire};
+use crate::geometry::number::floor_count;
 use crate::geometry::tessellate::Deviation;
 use crate::motion::Influences;
 
@@ -36,6 +37,28 @@ pub struct Scene {
     pub skins: Vec<Skin>,
     /// Motions.
     pub animations: Vec<Animation>,
+    /// The grid that all positions lie on, where they are written as whole numbers.
+    pub grid: Option<Grid>,
+}
+
+/// A grid of positions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// From line to line, metres: a power of two.
+    pub step: f64,
+    /// Its first point, a whole number of steps from the origin.
+    pub offset: DVec3,
+}
+
+impl Grid {
+    /// The place of a position on the grid; `None` where it lies on no point of it that 16 bits can name.
+    #[must_use]
+    pub fn place(&self, position: DVec3) -> Option<[u16; 3]> {
+        let steps = (position - self.offset) / self.step;
+        let whole = steps == steps.round() && steps.min_element() >= 0.0 && steps.max_element() <= 65535.0;
+        // Whole numbers of this size are exact.
+        whole.then(|| steps.to_array().map(|step| u16::try_from(floor_count(step)).unwrap_or(u16::MAX)))
+    }
 }
 
 /// Triangles with their attributes, and lines.

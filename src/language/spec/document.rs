@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 
 use crate::language::source::Span;
 use crate::language::spec::assertion::Assertion;
+use crate::language::spec::check::Check;
 use crate::language::spec::clip::Clip;
 use crate::language::spec::construct::{choices, table};
 use crate::language::spec::curve::Curve;
@@ -34,6 +35,8 @@ pub struct Spec {
     pub motion_tolerance: Option<Sp<f64>>,
     /// Facts about the asset, for its metadata.
     pub asset: Asset,
+    /// `[output]`.
+    pub output: Output,
     /// `[curve.NAME]`, in the order of the text.
     pub curves: IndexMap<String, Definition<Curve>>,
     /// `[map.NAME]`, in the order of the text.
@@ -84,6 +87,28 @@ choices! {
         Inch = "in";
         /// Feet of 304.8 mm.
         Foot = "ft";
+    }
+}
+
+choices! {
+    /// For whom a file is.
+    OutputProfile {
+        /// `NAME.glb`: floats, and no extension is needed. Every engine opens it.
+        Core = "core";
+        /// `NAME.quantized.glb`: positions of 16 bits on one grid for the whole model, normals and tangents of 8, texture
+        /// coordinates of 16 where they lie in the unit square. Needs `KHR_mesh_quantization`.
+        Quantized = "quantized";
+        /// `NAME.web.glb`: as quantized, on the coarsest grid that the tolerance allows, and compressed. Needs
+        /// `KHR_mesh_quantization` and `EXT_meshopt_compression`.
+        Web = "web";
+    }
+}
+
+table! {
+    /// What is written.
+    "output" pub Output {
+        /// One file for each of them; `["core"]` when it is not written.
+        profiles: Option<Sp<Vec<Sp<OutputProfile>>>> => Check::items(1);
     }
 }
 

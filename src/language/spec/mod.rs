@@ -87,7 +87,7 @@ pub use cubic::{Basis, BetaSpline, Border, Cubic};
 pub use curve::{Circle, Curve, Ellipse, Helix, Line, Polyline, Reverse, Transform};
 pub use deform::{Along, Bend, CoordinateAxis, Taper, Twist};
 pub use displace::{Displace, DisplaceProjection};
-pub use document::{Asset, Definition, Spec, Unit};
+pub use document::{Asset, Definition, Output, OutputProfile, Spec, Unit};
 pub use field::{
     BumpField, FallOff, Field, FieldDefinition, FieldFormula, FieldJoin, FieldOptions, FieldQuadric,
     FieldSum, HalfSpaceField, ImplicitShape, JoinMethod, PerturbedField, SkeletonElement, SkeletonField,

@@ -178,7 +178,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
             "event",
         ],
     ),
-    ("Facts, assertions and limits", "", &["asset", "bounds", "limits"]),
+    ("Facts, outputs, assertions and limits", "", &["asset", "output", "bounds", "limits"]),
 ];
 
 /// The reference page of the language, as Markdown.

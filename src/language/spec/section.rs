@@ -7,7 +7,7 @@ use crate::language::source::{SourceMap, Span};
 use crate::language::spec::assertion::read_assertions;
 use crate::language::spec::check::Check;
 use crate::language::spec::curve::Curve;
-use crate::language::spec::document::{Asset, Definition, Spec, Unit};
+use crate::language::spec::document::{Asset, Definition, Output, Spec, Unit};
 use crate::language::spec::field::Field;
 use crate::language::spec::import::Up;
 use crate::language::spec::kind::Kinds;
@@ -23,13 +23,14 @@ use crate::language::spec::spanned::Sp;
 use crate::language::value::{Data, Entry, Table};
 
 /// Everything that may stand at the top of a document, with what it means.
-pub(crate) const SECTIONS: [(&str, &str); 19] = [
+pub(crate) const SECTIONS: [(&str, &str); 20] = [
     ("unit", "The unit of every length; metres when it is not written."),
     ("up", "The axis that points up; y when it is not written."),
     ("tolerance", "How far meshes may lie from the true surfaces, in the document's unit."),
     ("motion-tolerance", "How far vertices may be from the exact motion of clips, in the document's unit."),
     ("include", "Documents whose definitions belong to this one; paths are relative to this file."),
     ("asset", "Facts about the asset."),
+    ("output", "What is written, and for whom."),
     ("parameters", "Named values for expressions: numbers, booleans, points, strings."),
     ("curve", "Curves, as `[curve.NAME.KIND]`."),
     ("map", "Maps of heights and masks, as `[map.NAME]` and `[map.NAME.KIND]`."),
@@ -66,6 +67,8 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
     let motion_tolerance = tolerance(table, "motion-tolerance", &mut reader);
     let tolerance = tolerance(table, "tolerance", &mut reader);
     let asset = table.get("asset").map(|value| reader.within("asset", |reader| Asset::read(value, reader)));
+    let output =
+        table.get("output").map(|value| reader.within("output", |reader| Output::read(value, reader)));
     let limits =
         table.get("limits").map(|value| reader.within("limits", |reader| LimitFields::read(value, reader)));
     let limits =
@@ -82,12 +85,14 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
     let asserts = table.get("assert").map(|value| read_assertions(value, &mut reader)).unwrap_or_default();
     let roots = resolve(&Names::of(table), limits.recursion, &mut reader);
     let asset = asset.flatten().unwrap_or(Asset { name: None, description: None });
+    let output = output.flatten().unwrap_or(Output { profiles: None });
     let spec = Spec {
         unit,
         up,
         tolerance,
         motion_tolerance,
         asset,
+        output,
         curves,
         maps,
         fields,

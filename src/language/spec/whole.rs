@@ -6,7 +6,7 @@ use crate::language::spec::assertion;
 use crate::language::spec::check::Check;
 use crate::language::spec::clip::Clip;
 use crate::language::spec::curve::Curve;
-use crate::language::spec::document::{Asset, Unit};
+use crate::language::spec::document::{Asset, Output, Unit};
 use crate::language::spec::field::FieldDefinition;
 use crate::language::spec::import::Up;
 use crate::language::spec::limit::LimitFields;
@@ -75,6 +75,7 @@ fn section(name: &str, schemas: &mut Schemas) -> Json {
         }
         "include" => json!({ "type": "array", "items": { "type": "string" } }),
         "asset" => Asset::schema(schemas),
+        "output" => Output::schema(schemas),
         "parameters" => named(json!({ "type": ["number", "boolean", "array", "string"] })),
         "curve" => named(Curve::schema(schemas)),
         "field" => named(FieldDefinition::schema(schemas)),

@@ -1,7 +1,7 @@
 //! What a `.glb` file holds, for drawing: nodes, meshes, skins, materials with their pictures, clips.
 //!
-//! Promise: any file that is valid glTF 2.0 and needs no compressed buffers is read, its quantized and sparse accessors
-//! too; a broken one is an error, never a panic. What cannot be drawn (points, pictures outside the file) is left out
+//! Promise: any file that is valid glTF 2.0 is read, its quantized and sparse accessors and what `EXT_meshopt_compression`
+//! packs too, if it needs no other compression; a broken one is an error, never a panic. What cannot be drawn (points, pictures outside the file) is left out
 //! and named in `notes`.
 //! No promise: this is not the reader of the report, which reads what it measures bit by bit (`gltf::read`).
 
@@ -20,6 +20,7 @@ pub use mesh::{Mesh, Part, Target};
 pub use texture::{Texture, Wrap};
 
 use crate::geometry::number::{floor_count, sin_cos, single};
+use crate::packing::unpacked;
 
 /// A file, read.
 #[derive(Clone, Debug, Default)]
@@ -186,7 +187,9 @@ const KNOWN: [&str; 3] = ["KHR_mesh_quantization", "KHR_materials_unlit", "KHR_t
 /// # Errors
 /// See [`AssetError`].
 pub fn read(bytes: &[u8]) -> Result<Asset, AssetError> {
-    let container = gltf::Glb::from_slice(bytes).map_err(|error| AssetError::Container(error.to_string()))?;
+    let bytes = unpacked(bytes).map_err(|error| AssetError::Container(error.to_string()))?;
+    let container =
+        gltf::Glb::from_slice(&bytes).map_err(|error| AssetError::Container(error.to_string()))?;
     let mut root: gltf::json::Root =
         serde_json::from_slice(&container.json).map_err(|error| AssetError::Document(error.to_string()))?;
     if let Some(unknown) = root.extensions_required.iter().find(|name| !KNOWN.contains(&name.as_str())) {

@@ -1,0 +1,156 @@
+// Files of the profiles `quantized` and `web` as files of floats, for tools that read no others: views decompressed by
+// meshoptimizer's own decoder, whole numbers divided as the specification says, positions taken to metres by the node
+// that carries each mesh, which is then left out.
+// node checks/unpack.mjs FOLDER FILE...   writes each file under its own name into FOLDER
+import fs from 'node:fs';
+import path from 'node:path';
+import { MeshoptDecoder } from 'three/examples/jsm/libs/meshopt_decoder.module.js';
+
+const PACKED = 'EXT_meshopt_compression';
+const ARRAYS = { 5120: Int8Array, 5121: Uint8Array, 5122: Int16Array, 5123: Uint16Array, 5125: Uint32Array, 5126: Float32Array };
+const WIDTHS = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT4: 16 };
+const MOST = { 5120: 127, 5121: 255, 5122: 32767, 5123: 65535 };
+
+function split(bytes) {
+  const length = bytes.readUInt32LE(12);
+  return { document: JSON.parse(bytes.subarray(20, 20 + length).toString('utf8')), binary: bytes.subarray(28 + length) };
+}
+
+function joined(document, binary) {
+  let text = Buffer.from(JSON.stringify(document), 'utf8');
+  text = Buffer.concat([text, Buffer.alloc((4 - (text.length % 4)) % 4, 0x20)]);
+  const words = (...numbers) => Buffer.from(Uint32Array.from(numbers).buffer);
+  const chunks = [words(text.length, 0x4e4f534a), text, words(binary.length, 0x004e4942), binary];
+  return Buffer.concat([words(0x46546c67, 2, 12 + chunks.reduce((sum, chunk) => sum + chunk.length, 0)), ...chunks]);
+}
+
+// The plain bytes of every view.
+function views(document, binary) {
+  return (document.bufferViews ?? []).map((view) => {
+    const packed = view.extensions?.[PACKED];
+    const { byteOffset = 0, byteLength } = packed ?? view;
+    const source = binary.subarray(byteOffset, byteOffset + byteLength);
+    if (packed === undefined) return new Uint8Array(source);
+    const plain = new Uint8Array(packed.count * packed.byteStride);
+    MeshoptDecoder.decodeGltfBuffer(plain, packed.count, packed.byteStride, source, packed.mode, packed.filter ?? 'NONE');
+    return plain;
+  });
+}
+
+// The numbers of an accessor as they stand, and as the specification divides them.
+function numbers(document, plain, accessor) {
+  const Kind = ARRAYS[accessor.componentType];
+  const width = WIDTHS[accessor.type];
+  const view = document.bufferViews[accessor.bufferView];
+  const stride = view.byteStride ?? width * Kind.BYTES_PER_ELEMENT;
+  const bytes = plain[accessor.bufferView];
+  const found = new Float64Array(accessor.count * width);
+  const data = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const get = `get${Kind.name.replace('Array', '')}`;
+  for (let row = 0; row < accessor.count; row += 1)
+    for (let column = 0; column < width; column += 1) {
+      const at = (accessor.byteOffset ?? 0) + row * stride + column * Kind.BYTES_PER_ELEMENT;
+      const number = data[get](at, true);
+      found[row * width + column] = accessor.normalized ? Math.max(number / MOST[accessor.componentType], -1) : number;
+    }
+  return found;
+}
+
+function unpack(bytes) {
+  const { document, binary } = split(bytes);
+  const plain = views(document, binary);
+  const carriers = (document.nodes ?? [])
+    .map((node, index) => ({ node, index }))
+    .filter(({ node }) => node.name === undefined && node.mesh !== undefined && node.children === undefined);
+  const grid = carriers.length
+    ? { step: Math.fround(carriers[0].node.scale[0]), offset: carriers[0].node.translation.map(Math.fround) }
+    : document.asset.extras?.grid;
+  const floats = new Map();
+  const asFloats = (index, map) => {
+    if (!floats.has(index)) floats.set(index, map(numbers(document, plain, document.accessors[index])));
+  };
+  for (const mesh of document.meshes ?? [])
+    for (const primitive of mesh.primitives)
+      for (const [name, index] of Object.entries(primitive.attributes)) {
+        const { componentType } = document.accessors[index];
+        if (name === 'POSITION' && componentType === 5123)
+          asFloats(index, (all) => all.map((number, at) => Math.fround(number * grid.step + grid.offset[at % 3])));
+        else if (/^(NORMAL|TANGENT|TEXCOORD_)/.test(name) && componentType !== 5126) asFloats(index, (all) => all);
+      }
+  const quantized = document.extensionsRequired?.includes('KHR_mesh_quantization') && grid !== undefined;
+  for (const skin of quantized ? (document.skins ?? []) : [])
+    asFloats(skin.inverseBindMatrices, (all) => fromMetres(all, grid));
+  // Every view once as it is, then one for each list of floats.
+  const out = plain.map((view) => Buffer.from(view));
+  for (const view of document.bufferViews ?? []) delete view.extensions;
+  for (const [index, all] of floats) {
+    const accessor = document.accessors[index];
+    const width = WIDTHS[accessor.type];
+    out.push(Buffer.from(Float32Array.from(all).buffer));
+    document.bufferViews.push({ buffer: 0, byteLength: 0, target: document.bufferViews[accessor.bufferView].target });
+    Object.assign(accessor, { bufferView: out.length - 1, byteOffset: 0, componentType: 5126 });
+    delete accessor.normalized;
+    for (const [bound, pick] of Object.entries({ min: Math.min, max: Math.max }))
+      if (accessor[bound] !== undefined)
+        accessor[bound] = accessor[bound].map((_, axis) =>
+          all.reduce((found, number, at) => (at % width === axis ? pick(found, Math.fround(number)) : found), all[axis]),
+        );
+  }
+  drop(document, carriers);
+  document.extensionsRequired = document.extensionsRequired?.filter((name) => name !== PACKED && name !== 'KHR_mesh_quantization');
+  document.extensionsUsed = document.extensionsUsed?.filter((name) => name !== PACKED && name !== 'KHR_mesh_quantization');
+  for (const list of ['extensionsRequired', 'extensionsUsed']) if (!document[list]?.length) delete document[list];
+  return joined(document, placed(document, out));
+}
+
+// Lays views one after the other; those that nothing refers to any more go.
+function placed(document, out) {
+  const used = new Set([...(document.accessors ?? []), ...(document.images ?? [])].map((one) => one.bufferView));
+  const places = new Map();
+  const parts = [];
+  let length = 0;
+  const kept = [];
+  document.bufferViews.forEach((view, index) => {
+    if (!used.has(index)) return;
+    const part = Buffer.concat([out[index], Buffer.alloc((4 - (out[index].length % 4)) % 4)]);
+    places.set(index, kept.length);
+    kept.push({ ...view, buffer: 0, byteOffset: length, byteLength: out[index].length });
+    parts.push(part);
+    length += part.length;
+  });
+  for (const one of [...(document.accessors ?? []), ...(document.images ?? [])])
+    if (one.bufferView !== undefined) one.bufferView = places.get(one.bufferView);
+  document.bufferViews = kept;
+  for (const view of kept) if (view.target === undefined) delete view.target;
+  document.buffers = [{ byteLength: length }];
+  return Buffer.concat(parts);
+}
+
+// Column-major matrices times the inverse of the way from the grid to metres.
+function fromMetres(all, { step, offset }) {
+  const found = Float64Array.from(all);
+  for (let start = 0; start < all.length; start += 16)
+    for (let row = 0; row < 4; row += 1) {
+      const [x, y, z, w] = [0, 1, 2, 3].map((column) => all[start + column * 4 + row]);
+      [x, y, z].forEach((part, column) => (found[start + column * 4 + row] = part / step));
+      found[start + 12 + row] = w - (x * offset[0] + y * offset[1] + z * offset[2]) / step;
+    }
+  return found;
+}
+
+// The nodes that only carry a mesh, which stand last: the node above shows it itself.
+function drop(document, carriers) {
+  const first = document.nodes.length - carriers.length;
+  for (const { node, index } of carriers) {
+    if (index < first) throw new Error(`node ${index} carries a mesh and does not stand after all others`);
+    const above = document.nodes.find((other) => other.children?.includes(index));
+    above.mesh = node.mesh;
+    above.children = above.children.filter((child) => child !== index);
+    if (above.children.length === 0) delete above.children;
+  }
+  document.nodes.length = first;
+}
+
+await MeshoptDecoder.ready;
+const [folder, ...files] = process.argv.slice(2);
+for (const file of files) fs.writeFileSync(path.join(folder, path.basename(file)), unpack(fs.readFileSync(file)));

@@ -1,0 +1,139 @@
+//! Unit vectors in few bytes, and the filters of `EXT_meshopt_compression` backwards.
+//!
+//! Source: Khronos Group, glTF extension `EXT_meshopt_compression`, 2021, appendix B (filters); Q. Meyer and others, On
+//! floating-point normal vectors, 2010 (the octahedron).
+
+/// A vector of unit length and a sign on the octahedron: what the filter OCTAHEDRAL reads back as four bytes.
+///
+/// Rounded so that what is read back lies nearest: within 0.9 degrees.
+#[must_use]
+pub fn octahedral([x, y, z]: [f64; 3], sign: f64) -> [i8; 4] {
+    let sum = x.abs() + y.abs() + z.abs();
+    let (x, y, z) = if sum > 0.0 { (x / sum, y / sum, z / sum) } else { (0.0, 0.0, 1.0) };
+    // The lower half is folded over the upper one.
+    let fold = |a: f64, b: f64| if a >= 0.0 { 1.0 - b.abs() } else { b.abs() - 1.0 };
+    let (u, v) = if z >= 0.0 { (x, y) } else { (fold(x, y), fold(y, x)) };
+    [signed_byte(u), signed_byte(v), 127, signed_byte(sign)]
+}
+
+/// A number from -1 to 1 as a normalized byte with a sign.
+#[must_use]
+pub fn signed_byte(number: f64) -> i8 {
+    #[expect(clippy::cast_possible_truncation, reason = "clamped to the range of the type")]
+    let byte = (number.clamp(-1.0, 1.0) * 127.0).round() as i8;
+    byte
+}
+
+/// What a filter makes of decoded bytes, in place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Filter {
+    /// Unit vectors of 4 or 8 bytes.
+    Octahedral,
+    /// Quaternions of 8 bytes.
+    Quaternion,
+    /// Floats, any number of them.
+    Exponential,
+}
+
+impl Filter {
+    /// The filter of a name of the extension.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "OCTAHEDRAL" => Some(Self::Octahedral),
+            "QUATERNION" => Some(Self::Quaternion),
+            "EXPONENTIAL" => Some(Self::Exponential),
+            _ => None,
+        }
+    }
+
+    /// Turns decoded rows into what they stand for; false where rows of this length are not the filter's.
+    #[must_use]
+    pub fn undo(self, bytes: &mut [u8], stride: usize) -> bool {
+        match (self, stride) {
+            (Self::Octahedral, 4) => in_rows::<4, [i8; 4]>(
+                bytes,
+                |row| row.map(u8::cast_signed),
+                meshopt::decode_filter_oct,
+                |row| row.map(i8::cast_unsigned),
+            ),
+            (Self::Octahedral, 8) => in_rows(bytes, shorts, meshopt::decode_filter_oct, bytes_of),
+            (Self::Quaternion, 8) => in_rows(bytes, shorts, meshopt::decode_filter_quat, bytes_of),
+            (Self::Exponential, stride) if stride % 4 == 0 => in_rows::<4, [u32; 1]>(
+                bytes,
+                |row| [u32::from_le_bytes(row)],
+                meshopt::decode_filter_exp,
+                |[word]| word.to_le_bytes(),
+            ),
+            _ => return false,
+        }
+        true
+    }
+}
+
+fn shorts(row: [u8; 8]) -> [i16; 4] {
+    let (pairs, _) = row.as_chunks::<2>();
+    std::array::from_fn(|at| i16::from_le_bytes(pairs[at]))
+}
+
+fn bytes_of(row: [i16; 4]) -> [u8; 8] {
+    let [[a, b], [c, d], [e, f], [g, h]] = row.map(i16::to_le_bytes);
+    [a, b, c, d, e, f, g, h]
+}
+
+fn in_rows<const N: usize, T>(
+    bytes: &mut [u8],
+    from: impl Fn([u8; N]) -> T,
+    undo: impl Fn(&mut [T]),
+    to: impl Fn(T) -> [u8; N],
+) {
+    let (rows, _) = bytes.as_chunks_mut::<N>();
+    let mut words: Vec<T> = rows.iter().map(|row| from(*row)).collect();
+    undo(&mut words);
+    rows.iter_mut().zip(words).for_each(|(row, word)| *row = to(word));
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::{Filter, octahedral};
+
+    #[test]
+    fn unit_vectors_come_back_within_a_degree() {
+        let mut worst: f64 = 1.0;
+        for i in -20..=20 {
+            for j in -20..=20 {
+                for k in -20..=20 {
+                    let Some(given) = DVec3::new(i.into(), j.into(), k.into()).try_normalize() else {
+                        continue;
+                    };
+                    let sign = if i < 0 { -1.0 } else { 1.0 };
+                    let mut bytes = octahedral(given.to_array(), sign).map(i8::cast_unsigned);
+                    assert!(Filter::Octahedral.undo(&mut bytes, 4));
+                    let [x, y, z, w] = bytes.map(|byte| f64::from(byte.cast_signed()) / 127.0);
+                    let found = DVec3::new(x, y, z);
+                    assert!((found.length() - 1.0).abs() < 0.012, "{found} is not of unit length");
+                    assert_eq!(w, sign);
+                    worst = worst.min(found.normalize().dot(given));
+                }
+            }
+        }
+        // The cosine of 0.9 degrees.
+        assert!(worst > 0.999_876, "{worst}");
+        assert_eq!(octahedral([0.0; 3], 0.0), [0, 0, 127, 0], "no direction is some direction");
+    }
+
+    #[test]
+    fn rows_of_the_wrong_length_are_refused() {
+        let refused = |filter: Filter, stride: usize| !filter.undo(&mut vec![0; stride], stride);
+        assert!(
+            refused(Filter::Octahedral, 12)
+                && refused(Filter::Quaternion, 4)
+                && refused(Filter::Exponential, 6)
+        );
+        let mut bytes = [3, 0, 0, 2].to_vec();
+        assert!(Filter::Exponential.undo(&mut bytes, 4));
+        assert_eq!(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]), 12.0, "3 times 2^2");
+    }
+}
