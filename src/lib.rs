@@ -27,7 +27,7 @@
 //! | `scene` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `model` |
 //! | `realize` | `geometry`, `motion`, `model`, `scene` |
 //! | `packing` | |
-//! | `optimize` | `geometry::number`, `geometry::mesh`, `motion`, `packing`, `scene` |
+//! | `optimize` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `packing`, `scene` |
 //! | `gltf` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `packing`, `scene` |
 //! | `report` | `geometry`, `motion`, `model`, `packing`, `scene`, `realize`, `gltf` |
 //! | `preview` | `geometry::number`, `packing`, `import` |
@@ -39,7 +39,7 @@
 //! | `cli` | everything |
 //!
 //! Rows stand in the order of the direction: a row names only rows above it. `scene` uses of `model` the
-//! materials, which are the same in both, and of `geometry::tessellate` the deviation; `optimize` and `gltf`
+//! materials, which are the same in both, and of `geometry::tessellate` the deviation, as `optimize` does; `optimize` and `gltf`
 //! see neither `model` nor `realize`.
 
 pub mod build;

@@ -25,6 +25,7 @@ mod paths;
 mod perturbed;
 mod polygons;
 mod primitives;
+mod profiles;
 mod quadrics;
 mod refusals;
 mod shading;

@@ -75,7 +75,7 @@ def shape(data: bpy.types.Mesh) -> dict[str, Any]:
     mesh.from_mesh(data)
     bounds = box(vertex.co for vertex in mesh.verts)
     facts: dict[str, Any] = take_lines(mesh)
-    facts |= {"bounds": bounds, "drawn-vertices": len(mesh.verts), "proper-triangles": len(mesh.faces)}
+    facts |= {"bounds": bounds, "separate-vertices": len(mesh.verts), "proper-triangles": len(mesh.faces)}
     if not mesh.faces:
         mesh.free()
         return facts

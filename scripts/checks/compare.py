@@ -63,9 +63,11 @@ BYTE_DIRECTION = 0.013
 # off by about 1e-7 a component.
 REPEATS = "repeated-triangles"
 COLLAPSED = "collapsed-triangles"
-# Tools that split a mesh into its primitives count the vertices that several share once for each. No report
-# says that number: it is counted in the file, and the tools are held against that.
+# Tools that split a mesh into its primitives count the vertices that several share once for each: all of them, or
+# those that the primitive uses. No report says these numbers: they are counted in the file, and the tools are held
+# against that.
 DRAWN = "drawn-vertices"
+SEPARATE = "separate-vertices"
 DEMANDS = {
     "validator-errors": 0,
     "validator-warnings": 0,
@@ -165,7 +167,7 @@ def with_counted(claimed: dict[str, Facts], measured: list[Measured]) -> dict[st
     for one in measured:
         for name in set(claimed) & set(one.shapes):
             counted[name] |= {
-                fact: one.shapes[name][fact] for fact in (REPEATS, COLLAPSED, DRAWN) if fact in one.shapes[name]
+                fact: one.shapes[name][fact] for fact in (REPEATS, COLLAPSED, DRAWN, SEPARATE) if fact in one.shapes[name]
             }
     return {name: {**claims, **counted[name]} for name, claims in claimed.items()}
 

@@ -85,6 +85,7 @@ def shape(mesh: Mesh) -> dict[str, Any]:
         "triangles": len(mesh.triangles),
         "vertices": len(mesh.positions),
         "drawn-vertices": sum(len(p.attributes["POSITION"]) for p in mesh.surfaces),
+        "separate-vertices": sum(len(np.unique(p.triangles)) for p in mesh.surfaces),
         "points": len(points),
         "bounds": box(mesh.places),
         "closed": len(triangles) > 0 and edges.closed,

@@ -13,6 +13,7 @@ use crate::geometry::mesh;
 use crate::geometry::mesh::weld::weld_equal;
 use crate::geometry::mesh::{PointIndex, Vertex, VertexIndex};
 use crate::geometry::number::Bounds;
+use crate::geometry::tessellate::Evidence;
 use crate::packing::signed_byte;
 use crate::scene::{Geometry, Grid, Scene};
 
@@ -66,7 +67,12 @@ pub(super) fn snap(scene: &mut Scene, coarse: bool) -> Result<(), TooCoarse> {
     let offset = (bounds.min / step).floor() * step;
     for geometry in &mut scene.geometries {
         let moved = snap_geometry(geometry, step);
-        geometry.deviation.bound += moved;
+        if moved > 0.0 {
+            geometry.deviation.bound += moved;
+            if geometry.deviation.evidence == Evidence::Exact {
+                geometry.deviation.evidence = Evidence::Proved;
+            }
+        }
     }
     scene.grid = Some(Grid { step, offset });
     Ok(())

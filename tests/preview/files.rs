@@ -150,10 +150,10 @@ fn broken_files_are_refused() {
 
 #[test]
 fn what_is_needed_and_unknown_is_named() {
-    let json = r#"{"asset":{"version":"2.0"},"extensionsUsed":["EXT_meshopt_compression"],"extensionsRequired":["EXT_meshopt_compression"]}"#;
+    let json = r#"{"asset":{"version":"2.0"},"extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"]}"#;
     assert_eq!(
         asset::read(&container(json, &[])).expect_err("compressed"),
-        AssetError::Extension("EXT_meshopt_compression".to_owned())
+        AssetError::Extension("KHR_draco_mesh_compression".to_owned())
     );
     let json = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]}"#;
     assert_eq!(asset::read(&container(json, &[])).expect_err("a loop"), AssetError::Tree(0));
