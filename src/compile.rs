@@ -17,7 +17,7 @@ use crate::language::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::language::source::{Files, Span};
 use crate::language::spec::{Assertion, Demand, Expected, OutputProfile, Spec};
 use crate::model::{Model, ShapeHandle};
-use crate::optimize::Rounding;
+use crate::optimize::{Order, Rounding};
 use crate::realize::{self, RealizeError, Realized};
 use crate::report::{About, Check, Report};
 use crate::scene::SceneError;
@@ -184,12 +184,12 @@ impl Made<'_> {
     ) -> Result<Compiled, Vec<Diagnostic>> {
         let Self { built, options, .. } = *self;
         let Realized { mut scene, shapes, .. } = realized;
-        let rounding = match profile {
-            Profile::Core => Rounding::Single,
-            Profile::Quantized => Rounding::Fine,
-            Profile::Web => Rounding::Coarse,
+        let (rounding, order) = match profile {
+            Profile::Core => (Rounding::Single, Order::Drawing),
+            Profile::Quantized => (Rounding::Fine, Order::Drawing),
+            Profile::Web => (Rounding::Coarse, Order::Packing),
         };
-        if let Err(coarse) = optimize::run(&mut scene, rounding) {
+        if let Err(coarse) = optimize::run(&mut scene, rounding, order) {
             warnings.push(too_coarse(profile, &coarse, self.spec));
         }
         let checked = scene::check::check(&scene).map_err(|error| vec![unwritable(&error, built)])?;

@@ -32,6 +32,8 @@ pub(super) enum Content {
     Attributes { stride: usize },
     /// Unit vectors on the octahedron where views are compressed, and as they are where not.
     Directions,
+    /// Floats with one exponent, of so many bytes an element.
+    Exponential { stride: usize },
     /// Indices of triangles of so many bytes, among so many vertices.
     Triangles { width: usize, vertices: usize },
     /// Indices of lines.
@@ -75,7 +77,7 @@ impl Binary {
         };
         if let Some((packed, rest)) = self.plain.and_then(|_| packed(&self.bytes[start..], content)) {
             // A view that compression makes longer stays as it is, unless a filter has been applied to it.
-            let filtered = matches!(content, Content::Directions);
+            let filtered = matches!(content, Content::Directions | Content::Exponential { .. });
             if packed.len() < length || filtered {
                 let before = self.plain.unwrap_or(0);
                 self.bytes.truncate(start);
@@ -107,7 +109,7 @@ impl Binary {
         fill(&mut self.bytes);
         let view = self.view(root, start, Some(Target::ArrayBuffer), content);
         let stride = match content {
-            Content::Attributes { stride } => stride,
+            Content::Attributes { stride } | Content::Exponential { stride } => stride,
             _ => 4,
         };
         if stride != elements.component.size() * elements.shape.multiplicity() {
@@ -151,6 +153,9 @@ fn packed(bytes: &[u8], content: Content) -> Option<(Vec<u8>, Map<String, Value>
         Content::Picture => return None,
         Content::Attributes { stride } => (encode_attributes(bytes, stride)?, stride, "ATTRIBUTES", None),
         Content::Directions => (encode_attributes(bytes, 4)?, 4, "ATTRIBUTES", Some("OCTAHEDRAL")),
+        Content::Exponential { stride } => {
+            (encode_attributes(bytes, stride)?, stride, "ATTRIBUTES", Some("EXPONENTIAL"))
+        }
         Content::Triangles { width, vertices } => {
             (encode_triangles(&indices(width), vertices)?, width, "TRIANGLES", None)
         }

@@ -18,7 +18,7 @@ use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
 use crate::geometry::number::{floor_count, single, size};
 use crate::geometry::tessellate::Deviation;
-use crate::packing::{octahedral, signed_byte};
+use crate::packing::{exponential, octahedral, signed_byte};
 use crate::scene::{Checked, Geometry, Grid};
 
 /// The bytes of a file and what only its writer knows of them.
@@ -390,12 +390,19 @@ impl Directions {
     }
 }
 
-/// Texture coordinates: floats, or 16 bits where all lie in the unit square.
+/// Texture coordinates: floats, or 16 bits where all lie in the unit square. Floats that are compressed have 16 bits of the
+/// power of two above the greatest.
 fn uvs(root: &mut Root, binary: &mut Binary, mesh: &mesh::Mesh, small: bool) -> Index<Accessor> {
     let count = mesh.vertices.len();
     let inside = |vertex: &mesh::Vertex| vertex.uv.min_element() >= 0.0 && vertex.uv.max_element() <= 1.0;
     if !(small && mesh.vertices.iter().all(inside)) {
         let floats = Elements { component: ComponentType::F32, shape: Type::Vec2, count };
+        if binary.is_compressed() {
+            let all: Vec<f64> = mesh.vertices.iter().flat_map(|vertex| vertex.uv.to_array()).collect();
+            return binary.attribute(root, floats, Content::Exponential { stride: 8 }, |bytes| {
+                exponential(&all).iter().for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
+            });
+        }
         return binary.attribute(root, floats, Content::Attributes { stride: 8 }, |bytes| {
             for vertex in &mesh.vertices {
                 put(bytes, vertex.uv.as_vec2().to_array());

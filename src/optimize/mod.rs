@@ -9,6 +9,7 @@ mod tangent;
 use crate::scene::Scene;
 
 pub use grid::{GRID_SHARE, TooCoarse};
+pub use order::Order;
 
 /// What positions are rounded to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +26,7 @@ pub enum Rounding {
 ///
 /// # Errors
 /// When the scene is too large for a grid to be within its tolerance; positions are then left as they are.
-pub fn run(scene: &mut Scene, rounding: Rounding) -> Result<(), TooCoarse> {
+pub fn run(scene: &mut Scene, rounding: Rounding, order: Order) -> Result<(), TooCoarse> {
     let compacted = |scene: &mut Scene| {
         for geometry in &mut scene.geometries {
             compact::compact(&mut geometry.mesh, geometry.influences.as_mut());
@@ -41,6 +42,6 @@ pub fn run(scene: &mut Scene, rounding: Rounding) -> Result<(), TooCoarse> {
         }
     };
     tangent::tangents(scene);
-    scene.geometries.iter_mut().for_each(order::order);
+    scene.geometries.iter_mut().for_each(|geometry| order::order(geometry, order));
     snapped
 }

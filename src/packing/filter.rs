@@ -5,15 +5,35 @@
 
 /// A vector of unit length and a sign on the octahedron: what the filter OCTAHEDRAL reads back as four bytes.
 ///
-/// Rounded so that what is read back lies nearest: within 0.9 degrees.
+/// Of the four ways to round, the one whose direction lies nearest: what is read back, in bytes again, is within 0.9
+/// degrees.
 #[must_use]
 pub fn octahedral([x, y, z]: [f64; 3], sign: f64) -> [i8; 4] {
     let sum = x.abs() + y.abs() + z.abs();
-    let (x, y, z) = if sum > 0.0 { (x / sum, y / sum, z / sum) } else { (0.0, 0.0, 1.0) };
+    let [x, y, z] = if sum > 0.0 { [x, y, z].map(|part| part / sum) } else { [0.0, 0.0, 1.0] };
     // The lower half is folded over the upper one.
     let fold = |a: f64, b: f64| if a >= 0.0 { 1.0 - b.abs() } else { b.abs() - 1.0 };
     let (u, v) = if z >= 0.0 { (x, y) } else { (fold(x, y), fold(y, x)) };
+    let ways = |number: f64| [number.floor(), number.ceil()];
+    let mut best = (f64::NEG_INFINITY, [0.0, 0.0]);
+    for way in ways(u * 127.0).into_iter().flat_map(|u| ways(v * 127.0).map(|v| [u / 127.0, v / 127.0])) {
+        let found = unfolded(way);
+        let near = (found[0] * x + found[1] * y + found[2] * z)
+            / (found[0] * found[0] + found[1] * found[1] + found[2] * found[2]).sqrt();
+        if near > best.0 {
+            best = (near, way);
+        }
+    }
+    let [u, v] = best.1;
     [signed_byte(u), signed_byte(v), 127, signed_byte(sign)]
+}
+
+/// A direction of the place on the octahedron.
+fn unfolded([u, v]: [f64; 2]) -> [f64; 3] {
+    let z = 1.0 - u.abs() - v.abs();
+    let below = z.min(0.0);
+    let back = |part: f64| if part >= 0.0 { part + below } else { part - below };
+    [back(u), back(v), z]
 }
 
 /// A number from -1 to 1 as a normalized byte with a sign.
@@ -22,6 +42,30 @@ pub fn signed_byte(number: f64) -> i8 {
     #[expect(clippy::cast_possible_truncation, reason = "clamped to the range of the type")]
     let byte = (number.clamp(-1.0, 1.0) * 127.0).round() as i8;
     byte
+}
+
+/// Numbers with one exponent for all of them: what the filter EXPONENTIAL reads back as floats. Each is rounded to a
+/// multiple of 2^-16 of the power of two above the greatest; numbers that are not finite count as 0.
+#[must_use]
+pub fn exponential(numbers: &[f64]) -> Vec<u32> {
+    let finite = |number: f64| if number.is_finite() { number } else { 0.0 };
+    let most = numbers.iter().fold(0.0, |most: f64, number| most.max(finite(*number).abs()));
+    let (mut power, mut exponent) = (1.0, 0_i8);
+    while power < most && exponent < 120 {
+        (power, exponent) = (power * 2.0, exponent + 1);
+    }
+    while power / 2.0 >= most && exponent > -80 {
+        (power, exponent) = (power / 2.0, exponent - 1);
+    }
+    let step = power / 65536.0;
+    let high = (exponent - 16).cast_unsigned();
+    let word = |number: &f64| {
+        // A mantissa of 24 bits with its sign, of which 17 are used.
+        #[expect(clippy::cast_possible_truncation, reason = "at most 65536 steps from 0")]
+        let [low, middle, third, _] = ((finite(*number) / step).round() as i32).to_le_bytes();
+        u32::from_le_bytes([low, middle, third, high])
+    };
+    numbers.iter().map(word).collect()
 }
 
 /// What a filter makes of decoded bytes, in place.
@@ -97,7 +141,7 @@ fn in_rows<const N: usize, T>(
 mod tests {
     use glam::DVec3;
 
-    use super::{Filter, octahedral};
+    use super::{Filter, exponential, octahedral};
 
     #[test]
     fn unit_vectors_come_back_within_a_degree() {
@@ -122,6 +166,21 @@ mod tests {
         // The cosine of 0.9 degrees.
         assert!(worst > 0.999_876, "{worst}");
         assert_eq!(octahedral([0.0; 3], 0.0), [0, 0, 127, 0], "no direction is some direction");
+    }
+
+    #[test]
+    fn numbers_of_one_exponent_come_back_within_half_a_step() {
+        for size in [0.0, 1e-6, 0.3, 1.0, 7.9, 8.0, 1234.5] {
+            let given: Vec<f64> = (0..=50).map(|at| size * (f64::from(at) / 25.0 - 1.0)).collect();
+            let mut bytes: Vec<u8> = exponential(&given).into_iter().flat_map(u32::to_le_bytes).collect();
+            assert!(Filter::Exponential.undo(&mut bytes, 8), "rows of two");
+            let found = bytes.as_chunks::<4>().0.iter().map(|word| f64::from(f32::from_le_bytes(*word)));
+            for (given, found) in given.iter().zip(found) {
+                // The power of two above the greatest is less than twice as large.
+                assert!((given - found).abs() <= size * 2.0 / 65536.0 / 2.0, "{given} became {found}");
+            }
+        }
+        assert_eq!(exponential(&[f64::NAN, f64::INFINITY]).len(), 2);
     }
 
     #[test]

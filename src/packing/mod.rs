@@ -1,9 +1,9 @@
 //! The one adapter to `meshopt`, whose functions trust their input.
 //!
 //! Promise: every index, count and stride is checked before it is handed over, so that no input of these functions can
-//! read or write beyond its arrays; a result depends on the input alone. Only what computes in integers is taken where
-//! bytes of a file depend on it, for sums of floats differ between processors; tangents are the exception. Not
-//! promised: that indices are those of a sensible mesh.
+//! read or write beyond its arrays; a result depends on the input alone. Where bytes of a file depend on it, only what
+//! computes in integers, or adds and compares floats, is taken: what a processor contracts into one operation differs
+//! between them. Tangents are the exception. Not promised: that indices are those of a sensible mesh.
 //!
 //! Source: A. Kapoulkine, meshoptimizer 1.3, 2026.
 
@@ -17,8 +17,8 @@ pub use codec::{
     decode_attributes, decode_sequence, decode_triangles, encode_attributes, encode_sequence,
     encode_triangles,
 };
-pub use filter::{Filter, octahedral, signed_byte};
-pub use order::order_for_cache;
+pub use filter::{Filter, exponential, octahedral, signed_byte};
+pub use order::{order_for_cache, order_for_strips};
 pub use tangent::corner_tangents;
 pub use unpack::{EXTENSION, UnpackError, unpacked};
 
