@@ -87,24 +87,24 @@ pub fn compile_profiles(
     }
     let made = Made { document, spec: &spec, built: &built, options };
     // One scene for floats, and one for whole numbers.
-    let mut scenes: [Option<Realized>; 2] = [None, None];
+    let mut scenes: [Option<Surfaces>; 2] = [None, None];
     let mut all = Vec::with_capacity(profiles.len());
     for (place, profile) in profiles.iter().enumerate() {
         let kept = &mut scenes[usize::from(profile.is_quantized())];
-        let realized = match kept.take() {
-            Some(realized) => realized,
+        let surfaces = match kept.take() {
+            Some(surfaces) => surfaces,
             None => {
-                let (realized, found) = made.realized(*profile).map_err(fail)?;
+                let (surfaces, found) = made.surfaces(*profile).map_err(fail)?;
                 if place == 0 {
                     warnings.extend(found);
                 }
-                realized
+                surfaces
             }
         };
         if profiles[place + 1..].iter().any(|other| other.is_quantized() == profile.is_quantized()) {
-            *kept = Some(realized.clone());
+            *kept = Some(surfaces.clone());
         }
-        all.push(made.file(realized, *profile, std::mem::take(&mut warnings)).map_err(fail)?);
+        all.push(made.file(surfaces, *profile, std::mem::take(&mut warnings)).map_err(fail)?);
     }
     Ok(all)
 }
@@ -153,15 +153,32 @@ struct Made<'a> {
     options: &'a Options,
 }
 
-/// The part of the tolerance that is left to surfaces where positions are rounded to a grid.
-const LEFT: f64 = 1.0 - optimize::GRID_SHARE;
+/// Surfaces as triangles, and the part of the tolerance that is left for rounding.
+#[derive(Clone)]
+struct Surfaces {
+    realized: Realized,
+    share: f64,
+}
 
 impl Made<'_> {
-    /// The scene for a profile, with what there is to say of it. Where rounding takes a part of the tolerance, surfaces
-    /// are kept within the rest of it.
-    fn realized(&self, profile: Profile) -> Result<(Realized, Vec<Diagnostic>), Vec<Diagnostic>> {
+    /// The surfaces for a profile, with what there is to say of them. Where rounding takes a part of the tolerance, they are
+    /// kept within the rest of it: an eighth goes to rounding, and more where the grid is coarser.
+    fn surfaces(&self, profile: Profile) -> Result<(Surfaces, Vec<Diagnostic>), Vec<Diagnostic>> {
+        if !profile.is_quantized() {
+            return self.surfaces_within(0.0);
+        }
+        let made = self.surfaces_within(optimize::GRID_SHARE)?;
+        // A little more, for other triangles end elsewhere.
+        let needed = optimize::grid_share(&made.0.realized.scene) * 1.001;
+        if needed > optimize::GRID_SHARE && needed <= optimize::MOST_GRID_SHARE {
+            return self.surfaces_within(needed);
+        }
+        Ok(made)
+    }
+
+    fn surfaces_within(&self, share: f64) -> Result<(Surfaces, Vec<Diagnostic>), Vec<Diagnostic>> {
         let built = self.built;
-        let coarser = if profile.is_quantized() { LEFT } else { 1.0 };
+        let coarser = 1.0 - share;
         let realized = realize::scene(&built.model, &realize::Options { coarser });
         let mut realized = realized.map_err(|errors| refusals(built, errors))?;
         for geometry in &mut realized.scene.geometries {
@@ -172,22 +189,22 @@ impl Made<'_> {
             notes.iter().map(|(shape, note)| noticed(built, *shape, note)).collect();
         found.extend(loose.iter().map(|one| motion::loose(built, one)));
         found.extend(beyond_tolerance(scene, shapes, built));
-        Ok((realized, found))
+        Ok((Surfaces { realized, share }, found))
     }
 
     /// The file of a profile, with these warnings and what there is to say of it alone.
     fn file(
         &self,
-        realized: Realized,
+        surfaces: Surfaces,
         profile: Profile,
         mut warnings: Vec<Diagnostic>,
     ) -> Result<Compiled, Vec<Diagnostic>> {
         let Self { built, options, .. } = *self;
-        let Realized { mut scene, shapes, .. } = realized;
+        let Surfaces { realized: Realized { mut scene, shapes, .. }, share } = surfaces;
         let (rounding, order) = match profile {
             Profile::Core => (Rounding::Single, Order::Drawing),
-            Profile::Quantized => (Rounding::Fine, Order::Drawing),
-            Profile::Web => (Rounding::Coarse, Order::Packing),
+            Profile::Quantized => (Rounding::Fine(share), Order::Drawing),
+            Profile::Web => (Rounding::Coarse(share), Order::Packing),
         };
         if let Err(coarse) = optimize::run(&mut scene, rounding, order) {
             warnings.push(too_coarse(profile, &coarse, self.spec));
@@ -221,7 +238,7 @@ impl Made<'_> {
 
 fn too_coarse(profile: Profile, coarse: &optimize::TooCoarse, spec: &Spec) -> Diagnostic {
     let message = format!(
-        "profile `{}` keeps its positions in single precision: on a grid of 16 bits over the whole model they would move by up to {:.3e} m, and an eighth of the tolerance, {:.3e} m, is what rounding may take",
+        "profile `{}` keeps its positions in single precision: on a grid of 16 bits over the whole model they would move by up to {:.3e} m, and half of the tolerance, {:.3e} m, is what rounding may take",
         profile.name(),
         coarse.moved,
         coarse.allowed

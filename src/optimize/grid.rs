@@ -20,8 +20,12 @@ use crate::scene::{Geometry, Grid, Scene};
 /// Steps that a whole number of 16 bits tells apart.
 const MOST_STEPS: f64 = 65535.0;
 
-/// The part of the tolerance that rounding to a grid may take: surfaces are kept within the rest.
+/// The part of the tolerance that rounding to a grid takes where that is enough: surfaces are kept within the rest.
 pub const GRID_SHARE: f64 = 0.125;
+
+/// The greatest part of the tolerance that rounding to a grid may take: beyond it, floats are shorter than the triangles
+/// that the rest would ask for.
+pub const MOST_GRID_SHARE: f64 = 0.5;
 
 /// Steps over the scene where no geometry has a tolerance: as fine as what engines commonly ask for.
 const STEPS: f64 = 16384.0;
@@ -35,31 +39,56 @@ pub struct TooCoarse {
     pub allowed: f64,
 }
 
-/// Rounds all positions to a grid: the coarsest one that stays within its share of the finest tolerance where `coarse`,
-/// else the finest one. O(size of the scene).
-///
-/// # Errors
-/// When even the finest grid would move points further than that. The scene is then as it was.
-pub(super) fn snap(scene: &mut Scene, coarse: bool) -> Result<(), TooCoarse> {
+/// The part of the finest tolerance that rounding to the finest grid takes; 0 where there is no tolerance.
+#[must_use]
+pub fn grid_share(scene: &Scene) -> f64 {
+    let bounds = bounds(scene);
+    let tolerance = finest_tolerance(scene).unwrap_or(f64::INFINITY);
+    if bounds.is_empty() { 0.0 } else { finest_step(&bounds) * half_diagonal() / tolerance }
+}
+
+fn bounds(scene: &Scene) -> Bounds {
     let of = |geometry: &Geometry| {
         Bounds::of_points(geometry.mesh.points.iter().copied()).union(geometry.wire.bounds())
     };
-    let bounds = scene.geometries.iter().map(of).fold(Bounds::EMPTY, Bounds::union);
+    scene.geometries.iter().map(of).fold(Bounds::EMPTY, Bounds::union)
+}
+
+fn finest_tolerance(scene: &Scene) -> Option<f64> {
+    scene.geometries.iter().filter_map(|geometry| geometry.tolerance).reduce(f64::min)
+}
+
+/// The least power of two with which 16 bits span a box, both its ends rounded outward.
+fn finest_step(bounds: &Bounds) -> f64 {
+    let extent = (bounds.max - bounds.min).max_element();
+    power_at_least(f64::max(extent, f64::MIN_POSITIVE) / (MOST_STEPS - 2.0))
+}
+
+/// How far a point moves at most, in steps.
+fn half_diagonal() -> f64 {
+    0.75_f64.sqrt()
+}
+
+/// Rounds all positions to a grid: the coarsest one that stays within a share of the finest tolerance where `coarse`, else
+/// the finest one. O(size of the scene).
+///
+/// # Errors
+/// When even the finest grid would move points further than that. The scene is then as it was.
+pub(super) fn snap(scene: &mut Scene, coarse: bool, share: f64) -> Result<(), TooCoarse> {
+    let bounds = bounds(scene);
     if bounds.is_empty() || !bounds.diagonal().is_finite() {
         return Ok(());
     }
     let extent = (bounds.max - bounds.min).max_element();
-    let tolerance = scene.geometries.iter().filter_map(|geometry| geometry.tolerance).reduce(f64::min);
-    let half_diagonal = 0.75_f64.sqrt();
-    // Two steps for rounding both ends outward.
-    let finest = power_at_least(f64::max(extent, f64::MIN_POSITIVE) / (MOST_STEPS - 2.0));
-    let step = match tolerance {
-        Some(tolerance) if finest * half_diagonal > tolerance * GRID_SHARE => {
-            return Err(TooCoarse { moved: finest * half_diagonal, allowed: tolerance * GRID_SHARE });
+    let finest = finest_step(&bounds);
+    let half_diagonal = half_diagonal();
+    let step = match finest_tolerance(scene) {
+        Some(tolerance) if finest * half_diagonal > tolerance * share => {
+            return Err(TooCoarse { moved: finest * half_diagonal, allowed: tolerance * MOST_GRID_SHARE });
         }
         Some(tolerance) if coarse => {
             // The power of two below the largest step that is allowed: more than half of it.
-            finest.max(power_at_least(tolerance * GRID_SHARE / half_diagonal / 2.0))
+            finest.max(power_at_least(tolerance * share / half_diagonal / 2.0))
         }
         None if coarse => finest.max(power_at_least(extent / STEPS / 2.0)),
         _ => finest,

@@ -8,18 +8,18 @@ mod tangent;
 
 use crate::scene::Scene;
 
-pub use grid::{GRID_SHARE, TooCoarse};
+pub use grid::{GRID_SHARE, MOST_GRID_SHARE, TooCoarse, grid_share};
 pub use order::Order;
 
-/// What positions are rounded to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What positions are rounded to; a grid with the share of the tolerance that it may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rounding {
     /// Single precision.
     Single,
     /// The finest grid of 16 bits.
-    Fine,
-    /// The coarsest grid of at most 16 bits that stays within [`GRID_SHARE`] of the tolerance.
-    Coarse,
+    Fine(f64),
+    /// The coarsest grid of at most 16 bits.
+    Coarse(f64),
 }
 
 /// Runs all passes in order.
@@ -35,8 +35,8 @@ pub fn run(scene: &mut Scene, rounding: Rounding, order: Order) -> Result<(), To
     compacted(scene);
     let snapped = match rounding {
         Rounding::Single => Ok(()),
-        Rounding::Fine | Rounding::Coarse => {
-            let snapped = grid::snap(scene, rounding == Rounding::Coarse);
+        Rounding::Fine(share) | Rounding::Coarse(share) => {
+            let snapped = grid::snap(scene, matches!(rounding, Rounding::Coarse(_)), share);
             compacted(scene);
             snapped
         }
