@@ -209,6 +209,7 @@ impl Made<'_> {
         if let Err(coarse) = optimize::run(&mut scene, rounding, order) {
             warnings.push(too_coarse(profile, &coarse, self.spec));
         }
+        realize::normal_maps(&built.model, &mut scene, &shapes).map_err(|errors| refusals(built, errors))?;
         let checked = scene::check::check(&scene).map_err(|error| vec![unwritable(&error, built)])?;
         let file = file_name(options, profile);
         let written = gltf::write(checked, profile, options.measure);
