@@ -5,20 +5,26 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::Builder;
+use crate::geometry::map::GridField;
 use crate::geometry::mesh;
 use crate::geometry::number::Bounds;
 use crate::geometry::solid::Combination;
 use crate::geometry::tessellate::{Closing, HeightBound, HeightMap, TwoSided};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
-use crate::language::spec::{ShapeOptions, Split, SplitPart};
+use crate::language::spec::{ShapeOptions, Split, SplitOperation, SplitPart};
 use crate::model::{Recipe, Shape, ShapeHandle, SolidOperation, SolidRecipe};
 
+/// Most samples of a grid on which two maps of a plane are brought.
+const MOST_SAMPLES: usize = 1 << 24;
+
 /// A part, its heights over the rectangle, and where it is written.
+#[derive(Clone)]
 struct Part {
     map: HeightMap,
     normal: DVec3,
     point: DVec3,
+    operation: SplitOperation,
     span: Span,
 }
 
@@ -27,6 +33,7 @@ struct Body {
     recipe: Recipe,
     place: DAffine3,
     bounds: Bounds,
+    operation: SplitOperation,
 }
 
 impl Builder<'_> {
@@ -48,10 +55,12 @@ impl Builder<'_> {
         let parts: Vec<Part> = parts.into_iter().collect::<Option<_>>()?;
         let bodies = self.bodies(parts)?;
         let reach = |k: usize| bodies[..k].iter().any(|other| overlap(&other.bounds, &bodies[k].bounds));
-        let apart = !(0..bodies.len()).any(reach);
+        let joined = bodies.iter().all(|body| body.operation == SplitOperation::Union);
+        let apart = joined && !(0..bodies.len()).any(reach);
         if apart && bodies.len() == 1 {
             return bodies.into_iter().next().map(|body| (body.recipe, body.place));
         }
+        let operations: Vec<SplitOperation> = bodies.iter().map(|body| body.operation).collect();
         let mut all = Vec::new();
         for (k, body) in bodies.into_iter().enumerate() {
             let mut own = self.options(options)?;
@@ -70,8 +79,7 @@ impl Builder<'_> {
             return Some((Recipe::Assembly(all.into_iter().map(|part| (part, here)).collect()), here));
         }
         self.needs_solids(span)?;
-        let union = (0..all.len()).map(Combination::Part).collect();
-        let operation = SolidOperation::Combine(Combination::Union(union));
+        let operation = SolidOperation::Combine(combined(&operations));
         Some((Recipe::Solid(SolidRecipe { parts: all, operation }), here))
     }
 
@@ -95,29 +103,45 @@ impl Builder<'_> {
             masks: [masks, own].concat(),
         };
         let span = written.map.span();
-        Some(Part { map, normal: written.normal.value.normalize(), point: written.point.value, span })
+        let (normal, point) = (written.normal.value.normalize(), written.point.value);
+        Some(Part { map, normal, point, operation: written.operation.value, span })
     }
 
     /// Pairs of parts on one plane, and what is left alone.
     fn bodies(&mut self, parts: Vec<Part>) -> Option<Vec<Body>> {
+        if let Some(first) = parts.first().filter(|first| first.operation != SplitOperation::Union) {
+            let report =
+                Diagnostic::error(Code::SplitParts, "the first part of a split body has no parts before it")
+                    .at(first.span, "has an operation")
+                    .help("write the part that is changed first");
+            self.report(report);
+            return None;
+        }
         let mut waiting: Vec<Option<(usize, Part)>> = parts.into_iter().enumerate().map(Some).collect();
         let mut bodies = Vec::new();
         for k in 0..waiting.len() {
             let Some((number, part)) = waiting[k].take() else { continue };
             let place = frame(part.normal, part.point);
-            let faces_it = |other: &Option<(usize, Part)>| {
-                other.as_ref().is_some_and(|(_, other)| {
-                    other.point == part.point && (other.normal + part.normal).length() < 1e-9
-                })
-            };
-            let other = waiting[k + 1..].iter().position(faces_it).and_then(|at| waiting[k + 1 + at].take());
+            // Added parts alone are stitched, and none is moved before one that takes something away.
+            let added = |part: &Part| part.operation == SplitOperation::Union;
+            let faces_it =
+                |other: &Part| other.point == part.point && (other.normal + part.normal).length() < 1e-9;
+            let near = waiting[k + 1..]
+                .iter()
+                .take_while(|other| other.as_ref().is_none_or(|(_, other)| added(&part) && added(other)));
+            let mut near = near.enumerate();
+            let found = near.find(|(_, other)| other.as_ref().is_some_and(|(_, other)| faces_it(other)));
+            let found = found.map(|(at, _)| at);
+            let other = found.and_then(|at| waiting[k + 1 + at].take());
             let (recipe, depth) = match other {
                 None => (Recipe::Height(part.map.clone()), 0.0),
                 Some((other_number, back)) => {
-                    if back.map.field.extent() != part.map.field.extent() {
+                    let Some([front, behind]) = common([&part.map.field, &back.map.field]) else {
                         self.report(unequal([&part, &back], [number, other_number]));
                         return None;
-                    }
+                    };
+                    let (mut part, mut back) = (part.clone(), back);
+                    (part.map.field, back.map.field) = (front, behind);
                     let depth = back.map.field.range().1.max(0.0);
                     let both = TwoSided { front: part.map.clone(), back: back.map };
                     (Recipe::TwoSided(Box::new(both)), depth)
@@ -131,16 +155,57 @@ impl Builder<'_> {
                     DVec3::new(pick(1, -half.x, half.x), pick(2, -depth, high), pick(4, -half.y, half.y));
                 place.transform_point3(corner)
             });
-            bodies.push(Body { recipe, place, bounds: Bounds::of_points(corners) });
+            let operation = part.operation;
+            bodies.push(Body { recipe, place, bounds: Bounds::of_points(corners), operation });
         }
         Some(bodies)
     }
 }
 
+/// Two fields on one grid on which both are what they were; none where that would be too fine.
+fn common(fields: [&Arc<GridField>; 2]) -> Option<[Arc<GridField>; 2]> {
+    let steps = fields.map(|field| [field.columns() - 1, field.rows() - 1]);
+    if steps[0] == steps[1] {
+        return Some(fields.map(Arc::clone));
+    }
+    let both = [0, 1].map(|axis| least_multiple(steps[0][axis], steps[1][axis]));
+    let samples = both[0].checked_add(1)?.checked_mul(both[1].checked_add(1)?)?;
+    if samples > MOST_SAMPLES {
+        return None;
+    }
+    Some([0, 1].map(|k| Arc::new(fields[k].refined(both[0] / steps[k][0], both[1] / steps[k][1]))))
+}
+
+fn least_multiple(a: usize, b: usize) -> usize {
+    let (mut x, mut y) = (a, b);
+    while y != 0 {
+        (x, y) = (y, x % y);
+    }
+    a / x * b
+}
+
+/// Each body joined to all before it by its operation.
+fn combined(operations: &[SplitOperation]) -> Combination {
+    let mut whole = Combination::Part(0);
+    for (number, operation) in operations.iter().enumerate().skip(1) {
+        let part = Combination::Part(number);
+        whole = match (operation, whole) {
+            (SplitOperation::Union, Combination::Union(mut parts)) => {
+                parts.push(part);
+                Combination::Union(parts)
+            }
+            (SplitOperation::Union, whole) => Combination::Union(vec![whole, part]),
+            (SplitOperation::Difference, whole) => Combination::Difference(Box::new(whole), vec![part]),
+            (SplitOperation::Intersection, whole) => Combination::Intersection(vec![whole, part]),
+        };
+    }
+    whole
+}
+
 fn unequal(parts: [&Part; 2], numbers: [usize; 2]) -> Diagnostic {
     let counts = parts.map(|part| format!("{} x {}", part.map.field.columns(), part.map.field.rows()));
     let message = format!(
-        "parts {} and {} lie on one plane, but their maps have {} and {} samples",
+        "parts {} and {} lie on one plane, but their maps have {} and {} samples, which share no grid of less than 16 777 216",
         numbers[0] + 1,
         numbers[1] + 1,
         counts[0],

@@ -275,3 +275,43 @@ fn a_split_body_is_one_skin() {
     assert!(facts.closed && facts.components == 1);
     assert!(facts.volume.is_some_and(|volume| volume > half && volume < 2.0 * half));
 }
+
+#[test]
+fn parts_of_a_split_body_may_have_other_grids() {
+    let side = |columns: u32, rows: u32, kind: &str, normal: &str| {
+        format!(
+            "{{ map = {{ interpolation = \"{kind}\", formula = {{ f = \"= 1 + x * y\", columns = {columns}, rows = {rows} }} }}, normal = {normal} }}"
+        )
+    };
+    for kind in ["bilinear", "bicubic"] {
+        let text = format!(
+            "tolerance = 0.001\n[shape.a.split]\nsize = [2, 3]\npart = [{}, {}]",
+            side(7, 5, kind, "[0, 1, 0]"),
+            side(10, 4, kind, "[0, -1, 0]")
+        );
+        let baked = bake(&text);
+        let facts = &baked.only().facts;
+        assert!(facts.closed && facts.manifold && facts.genus == Some(0), "{kind}");
+        // Twice the integral of 1 + x y over the unit square, which both grids hold exactly.
+        assert_near(facts.volume.expect("closed"), 2.0 * 1.25 * 6.0, 0.012);
+    }
+}
+
+#[test]
+fn parts_of_a_split_body_have_operations() {
+    let even = |height: f64, rest: &str| {
+        format!("{{ map = {{ grid = {{ rows = [[{height}, {height}], [{height}, {height}]] }} }}{rest} }}")
+    };
+    for (operation, exact) in [("union", 4.0 + 1.0), ("difference", 4.0 - 1.0), ("intersection", 1.0)] {
+        // A plate of 2 x 2 x 1 and one of 2 x 2 x 1/2 that stands on its side in the middle: half of it is inside.
+        let text = format!(
+            "[shape.a.split]\nsize = [2, 2]\npart = [{}, {}]",
+            even(1.0, ""),
+            even(0.5, &format!(", normal = [1, 0, 0], operation = \"{operation}\""))
+        );
+        let baked = bake(&text);
+        let facts = &baked.only().facts;
+        assert!(facts.closed, "{operation}");
+        assert_near(facts.volume.expect("closed"), exact, 1e-6);
+    }
+}

@@ -8,6 +8,7 @@
 
 mod closed;
 mod gaps;
+mod refined;
 mod scattered;
 mod slopes;
 

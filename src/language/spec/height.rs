@@ -212,8 +212,8 @@ impl HeightMap {
 table! {
     /// A body of parts on split planes: each part is solid between its plane and a height map over it, and all of them
     /// together are the shape. Two parts on one plane that look away from each other meet there without a wall between
-    /// them: a bust by a map of its face and one of the back of its head. Parts on other planes are joined by union where
-    /// they reach into each other.
+    /// them: a bust by a map of its face and one of the back of its head. Their maps may have different numbers of samples.
+    /// Parts on other planes are joined in their order, by union where no other `operation` is written.
     "split" pub Split {
         /// Lengths of the rectangle of each part, in the document's unit.
         size: Sp<DVec2> => Check::above(0.0);
@@ -236,12 +236,26 @@ table! {
         normal: Sp<DVec3> = DVec3::Y => Check::ANY;
         /// The middle of the rectangle.
         point: Sp<DVec3> = DVec3::ZERO;
+        /// What the part does to all those before it. The first part has none before it.
+        operation: Sp<SplitOperation> = SplitOperation::Union;
         /// Whether columns run the other way: for the picture of a back as who looks at it sees it.
         mirror: Sp<bool> = false;
         /// Conditions on the places that this part keeps, besides those of all parts.
         mask: Vec<Mask> = Vec::new();
     }
     checked check
+}
+
+choices! {
+    /// What a part of a split body does to those before it.
+    SplitOperation {
+        /// It is added.
+        Union = "union";
+        /// It is taken away.
+        Difference = "difference";
+        /// Only what lies in it stays.
+        Intersection = "intersection";
+    }
 }
 
 impl SplitPart {

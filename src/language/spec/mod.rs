@@ -94,7 +94,7 @@ pub use field::{
 };
 pub use formula::{Formula, FormulaCurve, FormulaForm};
 pub use grid::{Degrees, Directions, Rows};
-pub use height::{HeightBound, HeightClose, HeightMap, Level, Mask, Split, SplitPart};
+pub use height::{HeightBound, HeightClose, HeightMap, Level, Mask, Split, SplitOperation, SplitPart};
 pub use height_base::{CylinderBase, EllipsoidBase, HeightBase, Projection, ShapeBase, SphereBase};
 pub use implicit::Implicit;
 pub use import::{FilePath, Import, Up};

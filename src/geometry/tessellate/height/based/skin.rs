@@ -7,6 +7,7 @@
 use std::borrow::Cow;
 
 use glam::DVec3;
+use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
 
 use super::super::greedy::Floor;
 use super::super::ground::Ground;
@@ -60,8 +61,13 @@ impl Ground for Skin<'_> {
 
     fn samples(&self) -> Cow<'_, [DVec3]> {
         let (columns, rows) = (self.grid().columns(), self.grid().rows());
-        let places = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
-        Cow::Owned(places.map(|(i, j)| self.at(i as f64, j as f64)).collect())
+        let mut points = vec![DVec3::ZERO; columns * rows];
+        points.par_chunks_exact_mut(columns).enumerate().for_each(|(j, row)| {
+            for (i, point) in row.iter_mut().enumerate() {
+                *point = self.at(i as f64, j as f64);
+            }
+        });
+        Cow::Owned(points)
     }
 
     fn bend(&self) -> f64 {

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
 use super::super::delaunay::Place;
 use super::sheet::Sheet;
@@ -105,11 +106,13 @@ fn add_skin(
     let looks_up = (source == 0) != map.base.is_turned();
     let side = if source == 0 { 1.0 } else { -1.0 };
     let first = index(mesh.vertices.len());
-    for corner in 0..index(sheet.points.len()) {
-        let steps = sheet.steps[corner as usize];
+    let of = |corner: usize| {
+        let steps = sheet.steps[corner];
         let normal = map.jet(layer, steps).normal * side;
-        mesh.vertices.push(vertex(map, points[corner as usize], steps, normal, source, detail.uv));
-    }
+        vertex(map, points[corner], steps, normal, source, detail.uv)
+    };
+    let vertices: Vec<Vertex> = (0..sheet.points.len()).into_par_iter().with_min_len(1024).map(of).collect();
+    mesh.vertices.extend(vertices);
     let mut at_poles: Vec<(u32, usize)> = Vec::new();
     for corners in &sheet.triangles {
         let own = corners.map(|corner| points[corner as usize]);
