@@ -166,9 +166,8 @@ def with_counted(claimed: dict[str, Facts], measured: list[Measured]) -> dict[st
     counted: dict[str, Facts] = {name: {REPEATS: 0, COLLAPSED: 0} for name in claimed}
     for one in measured:
         for name in set(claimed) & set(one.shapes):
-            counted[name] |= {
-                fact: one.shapes[name][fact] for fact in (REPEATS, COLLAPSED, DRAWN, SEPARATE) if fact in one.shapes[name]
-            }
+            found = one.shapes[name]
+            counted[name] |= {fact: found[fact] for fact in (REPEATS, COLLAPSED, DRAWN, SEPARATE) if fact in found}
     return {name: {**claims, **counted[name]} for name, claims in claimed.items()}
 
 

@@ -146,7 +146,8 @@ def test_measures_converge_with_the_tolerance(kiln: Kiln, name: str, coarsest: f
     """Over three decades of the tolerance the error of the area, and of the volume, falls with it."""
     surface = SURFACES[name]
     expected = surface.area(128)
-    assert surface.area(64) == pytest.approx(expected, rel=1e-12)
+    # Where a surface pinches, as Steiner's does, quadrature converges slowly: still far below the smallest error here.
+    assert surface.area(64) == pytest.approx(expected, rel=1e-8)
     tolerances = [coarsest / 10 ** (k / 2) for k in range(7)]
     shapes = [kiln.bake(surface.text(tolerance)).shape("s") for tolerance in tolerances]
     assert exponent(tolerances, [abs(shape["area"] - expected) for shape in shapes]) >= 0.9

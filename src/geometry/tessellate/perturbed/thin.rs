@@ -34,6 +34,8 @@ struct Thinning<'a> {
     /// Corners as local points; `NONE` where a triangle is gone.
     triangles: Vec<[u32; 3]>,
     bounds: Vec<f64>,
+    /// Whether a triangle has changed since its edges were last looked at.
+    fresh: Vec<bool>,
 }
 
 const NONE: u32 = u32::MAX;
@@ -72,6 +74,7 @@ pub(super) fn thin(
         border: names.iter().map(|name| border.contains(name)).collect(),
         triangles: triangles.iter().map(|corners| corners.map(|corner| local[&corner])).collect(),
         bounds: Vec::new(),
+        fresh: vec![true; triangles.len()],
     };
     thinning.bounds = thinning.triangles.par_iter().map(|corners| thinning.bound(*corners)).collect();
     thinning.run(tolerance);
@@ -190,6 +193,7 @@ impl Thinning<'_> {
                 self.triangles[slot] =
                     corners.map(|corner| if corner == draw.point { draw.into } else { corner });
                 self.bounds[slot] = self.bound(self.triangles[slot]);
+                self.fresh[slot] = true;
             }
             touched[draw.point as usize] = true;
             known[draw.point as usize] = None;
@@ -210,11 +214,13 @@ impl Thinning<'_> {
         });
         let mut edges: Vec<([u32; 2], u32)> = edges.collect();
         edges.sort_unstable();
-        // Only where a triangle is near the tolerance something is gained.
+        // Only where a triangle is near the tolerance something is gained, and only where one is new something is found.
         let worth = |triangle: u32| self.bounds[triangle as usize] > 0.4 * tolerance;
+        let fresh = |triangle: u32| self.fresh[triangle as usize];
+        let either = |[a, b]: [u32; 2]| (worth(a) || worth(b)) && (fresh(a) || fresh(b));
         let inner: Vec<([u32; 2], [u32; 2])> = edges
             .windows(2)
-            .filter(|pair| pair[0].0 == pair[1].0 && (worth(pair[0].1) || worth(pair[1].1)))
+            .filter(|pair| pair[0].0 == pair[1].0 && either([pair[0].1, pair[1].1]))
             .map(|pair| (pair[0].0, [pair[0].1, pair[1].1]))
             .collect();
         let judged: Vec<Turn> = inner
@@ -237,6 +243,7 @@ impl Thinning<'_> {
                 })
             })
             .collect();
+        self.fresh.fill(false);
         let mut order: Vec<usize> = (0..judged.len()).collect();
         order.sort_by(|a, b| judged[*a].share.total_cmp(&judged[*b].share).then(a.cmp(b)));
         let mut touched = BTreeSet::new();
@@ -249,6 +256,7 @@ impl Thinning<'_> {
             for k in 0..2 {
                 self.triangles[pair[k] as usize] = new[k];
                 self.bounds[pair[k] as usize] = bounds[k];
+                self.fresh[pair[k] as usize] = true;
                 touched.insert(pair[k]);
                 around.extend(new[k]);
             }
