@@ -32,7 +32,7 @@ macro_rules! by_stride {
 }
 
 /// Attributes of `stride` bytes a vertex; `None` where the stride is no multiple of 4 up to 256, or the bytes are not
-/// whole vertices. Linear, some 100 MB a second.
+/// whole vertices. Linear.
 #[must_use]
 pub fn encode_attributes(bytes: &[u8], stride: usize) -> Option<Vec<u8>> {
     fn encode<const N: usize>(bytes: &[u8]) -> Option<Vec<u8>> {

@@ -11,6 +11,9 @@ use super::filter::Filter;
 /// The extension that is read.
 pub const EXTENSION: &str = "EXT_meshopt_compression";
 
+/// Plain bytes for each byte of a file.
+const MOST_RATIO: usize = 128;
+
 /// Why a file cannot be unpacked.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum UnpackError {
@@ -28,7 +31,7 @@ pub enum UnpackError {
 /// The file with all its buffer views plain; itself where none is compressed.
 ///
 /// Nothing else in it is changed, whether it is understood here or not. Linear in the bytes of the result, which are
-/// at most 128 times those of the file.
+/// hardly more than 128 times those of the file.
 ///
 /// # Errors
 /// When the file is broken.
@@ -48,6 +51,10 @@ pub fn unpacked(bytes: &[u8]) -> Result<Cow<'_, [u8]>, UnpackError> {
     {
         let view = view.as_object_mut().ok_or(UnpackError::View(index, "it is no object"))?;
         unpack(view, binary, &mut plain).map_err(|fault| UnpackError::View(index, fault))?;
+        // Views that share their bytes could ask for any amount together.
+        if plain.len() / MOST_RATIO > bytes.len() {
+            return Err(UnpackError::View(index, "with those before it, it is more than the file can hold"));
+        }
     }
     for list in ["extensionsUsed", "extensionsRequired"] {
         let left = root.get_mut(list).and_then(Value::as_array_mut).map(|names| {

@@ -169,3 +169,33 @@ fn what_claims_more_than_its_bytes_can_hold_is_refused_before_memory_is_taken() 
     let error = unpacked(&bytes).expect_err("no such file has so many vertices");
     assert!(error.to_string().contains("cannot be unpacked"), "{error}");
 }
+
+/// A file of a few hundred views that all name the same bytes.
+#[test]
+fn views_that_share_their_bytes_cannot_ask_for_any_amount() {
+    let zeros = vec![0_u8; 8 * 4096];
+    let packed = kiln::packing::encode_attributes(&zeros, 8).expect("the stride is one of the format");
+    let view = format!(
+        r#"{{"buffer":1,"byteLength":32768,"extensions":{{"EXT_meshopt_compression":{{"buffer":0,"byteLength":{},"byteStride":8,"count":4096,"mode":"ATTRIBUTES"}}}}}}"#,
+        packed.len()
+    );
+    let file = |count: usize| {
+        let views = vec![view.clone(); count].join(",");
+        let mut json = format!(
+            r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":{}}}],"bufferViews":[{views}]}}"#,
+            packed.len()
+        )
+        .into_bytes();
+        json.resize(json.len().next_multiple_of(4), b' ');
+        let mut binary = packed.clone();
+        binary.resize(binary.len().next_multiple_of(4), 0);
+        let word = |length: usize| u32::try_from(length).expect("it fits").to_le_bytes();
+        let mut bytes = [&b"glTF"[..], &word(2), &word(28 + json.len() + binary.len())].concat();
+        bytes
+            .extend([&word(json.len())[..], b"JSON", &json, &word(binary.len()), b"BIN\0", &binary].concat());
+        bytes
+    };
+    assert!(unpacked(&file(1)).is_ok());
+    let error = unpacked(&file(400)).expect_err("4 MB in 60 kB");
+    assert!(error.to_string().contains("more than the file can hold"), "{error}");
+}
