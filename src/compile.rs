@@ -88,6 +88,7 @@ pub fn compile_profiles(
     let made = Made { document, spec: &spec, built: &built, options };
     // One scene for floats, and one for whole numbers.
     let mut scenes: [Option<Surfaces>; 2] = [None, None];
+    let mut said: Vec<Diagnostic> = Vec::new();
     let mut all = Vec::with_capacity(profiles.len());
     for (place, profile) in profiles.iter().enumerate() {
         let kept = &mut scenes[usize::from(profile.is_quantized())];
@@ -95,9 +96,9 @@ pub fn compile_profiles(
             Some(surfaces) => surfaces,
             None => {
                 let (surfaces, found) = made.surfaces(*profile).map_err(fail)?;
-                if place == 0 {
-                    warnings.extend(found);
-                }
+                // What is true of floats is said once, though whole numbers have it too.
+                warnings.extend(found.iter().filter(|new| !said.contains(new)).cloned());
+                said.extend(found);
                 surfaces
             }
         };

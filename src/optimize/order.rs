@@ -13,12 +13,10 @@ use rayon::prelude::{ParallelIterator, ParallelSliceMut};
 
 use super::band::bands;
 use crate::geometry::mesh;
+use crate::geometry::mesh::cache::{FIFO_SIZE, FifoCache};
 use crate::geometry::mesh::{Mesh, VertexIndex};
 use crate::packing::{order_for_cache, order_for_strips};
 use crate::scene::Geometry;
-
-/// Vertices in the cache that is ordered for, first in and first out.
-const CACHE: u32 = 16;
 
 /// Overdraw may cost this part of the misses of the cache.
 const THRESHOLD: f64 = 1.05;
@@ -88,10 +86,10 @@ fn strip_piece(piece: &mut [[VertexIndex; 3]]) -> u32 {
     let local = Local::of(piece);
     let mut indices: Vec<u32> = piece.iter().flatten().map(|vertex| local.name(*vertex)).collect();
     order_for_strips(&mut indices, local.len());
-    let mut cache = Cache::new(local.len());
+    let mut cache = FifoCache::new(local.len());
     let mut misses = 0;
     for (to, from) in piece.iter_mut().zip(indices.as_chunks::<3>().0) {
-        misses += cache.misses(*from);
+        misses += cache.misses_of(*from);
         *to = from.map(|name| local.vertex(name));
     }
     misses
@@ -112,15 +110,15 @@ impl Places<'_> {
 /// Orders triangles and tells how many vertices are transformed for them.
 fn order_piece(piece: &mut [[VertexIndex; 3]], places: Places<'_>) -> u32 {
     let local = Local::of(piece);
-    let mut cache = Cache::new(local.len());
+    let mut cache = FifoCache::new(local.len());
     let bands = bands(piece);
     let mut misses: u32 =
-        bands.triangles.iter().map(|at| cache.misses(at.map(|vertex| local.name(vertex)))).sum();
+        bands.triangles.iter().map(|at| cache.misses_of(at.map(|vertex| local.name(vertex)))).sum();
     let (ordered, clusters) = if f64::from(misses) <= GOOD * piece.len() as f64 {
         (bands.triangles, bands.clusters)
     } else {
         let mut indices: Vec<u32> = piece.iter().flatten().map(|vertex| local.name(*vertex)).collect();
-        order_for_cache(&mut indices, local.len(), CACHE);
+        order_for_cache(&mut indices, local.len(), FIFO_SIZE);
         let triangles = indices.as_chunks::<3>().0;
         let clusters;
         (clusters, misses) = self::clusters(triangles, local.len());
@@ -178,36 +176,6 @@ impl Local {
     }
 }
 
-/// A cache of vertices, first in and first out: what came more than [`CACHE`] misses ago is forgotten.
-struct Cache {
-    entered: Vec<u32>,
-    clock: u32,
-}
-
-impl Cache {
-    fn new(vertices: usize) -> Self {
-        Self { entered: vec![0; vertices], clock: CACHE + 1 }
-    }
-
-    fn forget(&mut self) {
-        self.clock += CACHE + 1;
-    }
-
-    /// How many corners of a triangle are not in the cache; they enter it.
-    fn misses(&mut self, triangle: [u32; 3]) -> u32 {
-        let mut misses = 0;
-        for vertex in triangle {
-            let entered = &mut self.entered[vertex as usize];
-            if self.clock - *entered > CACHE {
-                *entered = self.clock;
-                self.clock += 1;
-                misses += 1;
-            }
-        }
-        misses
-    }
-}
-
 /// Triangles of a cluster that are asked where they look.
 const SAMPLES: usize = 16;
 
@@ -253,8 +221,8 @@ fn outward_first(
 /// Neighboring triangles that are drawn one after the other. A cluster begins where the cache holds no corner of a triangle, and wherever so far it missed no more than a
 /// little above the average, so that a break costs little.
 fn clusters(triangles: &[[u32; 3]], vertices: usize) -> (Vec<Range<usize>>, u32) {
-    let mut cache = Cache::new(vertices);
-    let misses: Vec<u32> = triangles.iter().map(|triangle| cache.misses(*triangle)).collect();
+    let mut cache = FifoCache::new(vertices);
+    let misses: Vec<u32> = triangles.iter().map(|triangle| cache.misses_of(*triangle)).collect();
     let all_missed = |(at, misses): (usize, &u32)| (at == 0 || *misses == 3).then_some(at);
     let hard: Vec<usize> = misses.iter().enumerate().filter_map(all_missed).collect();
     let mut starts = Vec::with_capacity(hard.len());
@@ -267,7 +235,7 @@ fn clusters(triangles: &[[u32; 3]], vertices: usize) -> (Vec<Range<usize>>, u32)
         cache.forget();
         let (mut missed, mut faces) = (0, 0);
         for (at, triangle) in triangles[start..end].iter().enumerate() {
-            missed += cache.misses(*triangle);
+            missed += cache.misses_of(*triangle);
             faces += 1;
             if f64::from(missed) <= allowed * f64::from(faces) {
                 starts.push(start + at + 1);

@@ -20,7 +20,7 @@ pub use codec::{
 pub use filter::{Filter, exponential, octahedral, signed_byte};
 pub use order::{order_for_cache, order_for_strips};
 pub use tangent::corner_tangents;
-pub use unpack::{EXTENSION, UnpackError, unpacked};
+pub use unpack::{EXTENSION, UnpackError, stored_lengths, unpacked};
 
 /// Whether all indices are below a count, and make whole triangles.
 fn whole_triangles(indices: &[u32], vertices: usize) -> bool {

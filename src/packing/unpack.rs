@@ -36,14 +36,12 @@ pub enum UnpackError {
 /// # Errors
 /// When the file is broken.
 pub fn unpacked(bytes: &[u8]) -> Result<Cow<'_, [u8]>, UnpackError> {
-    let container = |error: gltf::Error| UnpackError::Container(error.to_string());
-    let file = gltf::Glb::from_slice(bytes).map_err(container)?;
+    let file = container(bytes)?;
     let name = EXTENSION.as_bytes();
     if !file.json.windows(name.len()).any(|part| part == name) {
         return Ok(Cow::Borrowed(bytes));
     }
-    let root = serde_json::from_slice(&file.json).map_err(|error| UnpackError::Json(error.to_string()))?;
-    let Value::Object(mut root) = root else { return Err(UnpackError::Json("it is no object".to_owned())) };
+    let mut root = root(&file)?;
     let binary = file.bin.as_deref().unwrap_or_default();
     let mut plain = Vec::new();
     for (index, view) in
@@ -74,7 +72,33 @@ pub fn unpacked(bytes: &[u8]) -> Result<Cow<'_, [u8]>, UnpackError> {
         json: Cow::Owned(json),
         bin: Some(Cow::Owned(plain)),
     };
-    whole.to_vec().map(Cow::Owned).map_err(container)
+    whole.to_vec().map(Cow::Owned).map_err(|error| UnpackError::Container(error.to_string()))
+}
+
+/// For each buffer view how many bytes of the file it takes, compressed or not.
+///
+/// # Errors
+/// When the file is broken.
+pub fn stored_lengths(bytes: &[u8]) -> Result<Vec<u64>, UnpackError> {
+    let root = root(&container(bytes)?)?;
+    let length = |(index, view): (usize, &Value)| {
+        let packed = view.get("extensions").and_then(|all| all.get(EXTENSION));
+        let length = packed.unwrap_or(view).get("byteLength").and_then(Value::as_u64);
+        length.ok_or(UnpackError::View(index, "it has no length"))
+    };
+    root.get("bufferViews").and_then(Value::as_array).into_iter().flatten().enumerate().map(length).collect()
+}
+
+fn container(bytes: &[u8]) -> Result<gltf::Glb<'_>, UnpackError> {
+    gltf::Glb::from_slice(bytes).map_err(|error| UnpackError::Container(error.to_string()))
+}
+
+fn root(file: &gltf::Glb<'_>) -> Result<Map<String, Value>, UnpackError> {
+    match serde_json::from_slice(&file.json) {
+        Ok(Value::Object(root)) => Ok(root),
+        Ok(_) => Err(UnpackError::Json("it is no object".to_owned())),
+        Err(error) => Err(UnpackError::Json(error.to_string())),
+    }
 }
 
 /// Appends the plain bytes of a view and makes the view one of them.

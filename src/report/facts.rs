@@ -15,7 +15,7 @@ use thiserror::Error;
 use crate::geometry::mesh::topology::{self, Topology};
 use moments::Moments;
 
-pub use cache::{FIFO_SIZE, VertexCache, vertex_cache};
+pub use cache::{VertexCache, vertex_cache};
 pub use lines::{LineFacts, measure_lines};
 pub use source::{Corner, Position};
 

@@ -281,7 +281,7 @@ pub fn measure(
         clips,
         paths: joints::joints(model),
         quadrics: quadrics::quadrics(model),
-        heights: heights::heights(&file, written, model, shapes),
+        heights: heights::heights(&file, written, model, shapes)?,
         networks: surfaces::networks(model),
         perturbed: perturbed::perturbed(model),
         assertions: Vec::new(),

@@ -99,6 +99,37 @@ fn compression_makes_files_a_fraction() {
     assert!(web < 0.25 * core, "{web} of {core}");
 }
 
+/// The bytes that a height map stands for are those of each file, packed or not.
+#[test]
+fn the_bytes_of_a_mesh_are_those_of_its_file() {
+    let text = "tolerance = 0.004\n[map.hills.noise]\nseed = 3\ncolumns = 65\nrows = 65\n[shape.a.height-map]\nmap = \"hills\"\nsize = [8, 8]\nrange = [0, 1]";
+    let made = files(text, &[Profile::Core, Profile::Quantized, Profile::Web]);
+    let bytes: Vec<u64> = made
+        .iter()
+        .map(|file| {
+            let report = file.report.as_ref().expect("there is a report");
+            let bytes = report.heights["a"].mesh_bytes;
+            // A file of one shape holds little else: its JSON, and texture coordinates.
+            assert!(bytes < report.file.bytes && bytes > 0, "{bytes} of {}", report.file.bytes);
+            bytes
+        })
+        .collect();
+    let totals = &made[0].report.as_ref().expect("there is a report").totals;
+    let width = if totals.vertices < 0xFFFF { 2 } else { 4 };
+    assert_eq!(bytes[0], totals.vertices * 24 + totals.triangles * 3 * width, "floats take what they take");
+    assert!(bytes[1] < bytes[0] && 2 * bytes[2] < bytes[1], "{bytes:?}");
+}
+
+/// What only one profile meets is said with its file, and what all meet once.
+#[test]
+fn warnings_stand_with_the_first_file_that_they_are_true_of() {
+    let text = "tolerance = 0.01\n[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]\nfaces = [[0, 2, 1, 3]]";
+    let made = files(text, &[Profile::Core, Profile::Quantized, Profile::Web]);
+    let codes: Vec<Vec<Code>> =
+        made.into_iter().map(|file| file.warnings.into_iter().map(|one| one.code).collect()).collect();
+    assert_eq!(codes, [vec![Code::FoldedFace], vec![], vec![]]);
+}
+
 #[test]
 fn a_model_too_large_for_its_tolerance_keeps_floats_and_says_so() {
     let text = "tolerance = 1e-5\n[shape.a.cylinder]\nradius = 0.5\nheight = 3";

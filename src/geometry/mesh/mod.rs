@@ -9,6 +9,7 @@
 //! in range, boundary edges kept exactly, hard edges where asked. Not promised: that the result is closed,
 //! or free of self-intersections; [`topology`] measures the first on any index buffer.
 
+pub mod cache;
 pub mod convert;
 pub mod crossing;
 mod normals;

@@ -20,7 +20,7 @@ pub use mesh::{Mesh, Part, Target};
 pub use texture::{Texture, Wrap};
 
 use crate::geometry::number::{floor_count, sin_cos, single};
-use crate::packing::unpacked;
+use crate::packing::{UnpackError, unpacked};
 
 /// A file, read.
 #[derive(Clone, Debug, Default)]
@@ -160,6 +160,9 @@ pub enum AssetError {
     /// Not a valid document.
     #[error("it is not a valid glTF document: {0}")]
     Document(String),
+    /// Its compressed data is broken.
+    #[error(transparent)]
+    Packed(#[from] UnpackError),
     /// It needs what is not read here.
     #[error("it needs the extension {0}, which is not supported here")]
     Extension(String),
@@ -187,7 +190,7 @@ const KNOWN: [&str; 3] = ["KHR_mesh_quantization", "KHR_materials_unlit", "KHR_t
 /// # Errors
 /// See [`AssetError`].
 pub fn read(bytes: &[u8]) -> Result<Asset, AssetError> {
-    let bytes = unpacked(bytes).map_err(|error| AssetError::Container(error.to_string()))?;
+    let bytes = unpacked(bytes)?;
     let container =
         gltf::Glb::from_slice(&bytes).map_err(|error| AssetError::Container(error.to_string()))?;
     let mut root: gltf::json::Root =
