@@ -2,10 +2,12 @@
 
 mod motion;
 mod notice;
+mod origin;
 mod solid;
 mod subdivide;
 
 use notice::noticed;
+pub use origin::Origins;
 
 use crate::build::{self, Built};
 use crate::geometry::curve::AnyCurve;
@@ -38,6 +40,8 @@ pub struct Options {
     pub no_report: bool,
     /// Measure the deviation by dense sampling.
     pub measure: bool,
+    /// Keep where the triangles of the file are defined.
+    pub origins: bool,
     /// For whom files are; where empty, for whom the document says, and without that, for all.
     pub profiles: Vec<Profile>,
 }
@@ -53,6 +57,8 @@ pub struct Compiled {
     pub profile: Profile,
     /// What is known of it.
     pub report: Option<Report>,
+    /// Where its triangles are defined, when that was asked for.
+    pub origins: Option<Origins>,
     /// What a person should know though nothing is wrong.
     pub warnings: Diagnostics,
 }
@@ -213,7 +219,8 @@ impl Made<'_> {
         realize::normal_maps(&built.model, &mut scene, &shapes).map_err(|errors| refusals(built, errors))?;
         let checked = scene::check::check(&scene).map_err(|error| vec![unwritable(&error, built)])?;
         let file = file_name(options, profile);
-        let written = gltf::write(checked, profile, options.measure);
+        let written = gltf::write(checked, profile, options.measure || options.origins);
+        let meshes: Vec<usize> = scene.meshes.iter().map(|mesh| mesh.geometry).collect();
         // From here on the bytes speak for themselves; the scene's memory is needed no more.
         drop(scene);
         let written = written.map_err(|error| {
@@ -233,8 +240,9 @@ impl Made<'_> {
             warnings.extend(beyond_bound(&report, &shapes, built));
             Some(report)
         };
+        let origins = options.origins.then(|| Origins::new((built, &shapes), meshes, &written));
         let warnings = self.document.diagnostics(warnings);
-        Ok(Compiled { bytes: written.bytes, file, profile, report, warnings })
+        Ok(Compiled { bytes: written.bytes, file, profile, report, origins, warnings })
     }
 }
 

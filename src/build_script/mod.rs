@@ -224,6 +224,7 @@ impl Build {
                         path: task.path.clone(),
                         no_report: !self.report,
                         measure: false,
+                        origins: false,
                         profiles: self.profiles.clone(),
                     };
                     let folder = task.output.rsplit_once('/').map_or("", |(folder, _)| folder);

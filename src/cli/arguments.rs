@@ -66,6 +66,8 @@ pub(crate) enum Command {
     Check(Check),
     /// Draw a picture of a document or of a .glb file
     Render(Render),
+    /// Bake a document on every save, and show it in a page
+    Watch(Watch),
     /// Print points and derivatives of a curve or a surface as JSON
     Sample(Sample),
     /// Print the JSON Schema of documents, for editors
@@ -173,6 +175,30 @@ pub(crate) struct Render {
     /// The variant of the document
     #[arg(long, value_name = "NAME")]
     pub(crate) variant: Option<String>,
+    /// Set a parameter of the document
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub(crate) set: Vec<(String, String)>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Watch {
+    /// The document
+    pub(crate) file: PathBuf,
+    /// Write what is baked to this folder too
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Where on this machine the page is served; another port is taken where this one is in use
+    #[arg(long, value_name = "N", default_value_t = 4870)]
+    pub(crate) port: u16,
+    /// The folder of three.js [default: where npm installed it, for this folder, the project, or one above]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) three: Option<PathBuf>,
+    /// For whom files are [default: what the document says, else core]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = profile)]
+    pub(crate) profile: Vec<Profile>,
+    /// The folder that the document may not read outside of [default: the working directory]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) root: Option<PathBuf>,
     /// Set a parameter of the document
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<(String, String)>,

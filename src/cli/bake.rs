@@ -192,6 +192,7 @@ impl Worker<'_> {
                 path: task.path.clone(),
                 no_report: self.bake.no_report,
                 measure: self.bake.measure,
+                origins: false,
                 profiles: self.bake.profile.clone(),
             };
             outcome = outcome.max(match compile_profiles(&document, &files, &options) {
@@ -282,7 +283,8 @@ fn worst(report: &Report) -> Option<DeviationFacts> {
     deviations.max_by(|a, b| a.bound.total_cmp(&b.bound))
 }
 
-fn line(target: &Path, compiled: &Compiled) -> String {
+/// An asset in a line.
+pub(super) fn line(target: &Path, compiled: &Compiled) -> String {
     let bytes = size(compiled.bytes.len());
     let Some(report) = &compiled.report else { return format!("{}  {bytes}", target.display()) };
     let accuracy = worst(report).map_or_else(String::new, |deviation| {
@@ -321,7 +323,7 @@ fn size(bytes: usize) -> String {
 }
 
 /// The file and its report.
-fn files_of(compiled: &Compiled) -> std::io::Result<Vec<(String, Cow<'_, [u8]>)>> {
+pub(super) fn files_of(compiled: &Compiled) -> std::io::Result<Vec<(String, Cow<'_, [u8]>)>> {
     let mut files = vec![(compiled.file.clone(), Cow::Borrowed(compiled.bytes.as_slice()))];
     if let Some(report) = &compiled.report {
         let mut text = serde_json::to_vec_pretty(report)?;

@@ -16,6 +16,7 @@ mod sample_curve;
 mod sample_surface;
 mod starter;
 mod timed;
+mod watch;
 
 use std::process::ExitCode;
 
@@ -64,6 +65,7 @@ pub fn run() -> ExitCode {
         Command::Bake(bake) => bake::run(&bake, &printer),
         Command::Check(check) => check::run(&check, &printer),
         Command::Render(render) => render::run(&render, &printer),
+        Command::Watch(watch) => watch::run(&watch, &printer),
         Command::Sample(sample) => sample::run(&sample, &printer),
         Command::Schema => describe::schema(&printer),
         Command::Reference => describe::reference(&printer),

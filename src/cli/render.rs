@@ -115,6 +115,7 @@ fn bytes(render: &Render, printer: &Printer) -> Result<Vec<u8>, Fault> {
         path: task.path.clone(),
         no_report: true,
         measure: false,
+        origins: false,
         profiles: vec![Profile::Core],
     };
     let compiled = document.and_then(|document| compile(&document, &files, &options));

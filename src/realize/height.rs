@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::source::Window;
+use super::window::Window;
 use crate::geometry::number::Bounds;
 use crate::geometry::tessellate::{BasedMap, Closing, HeightMap, Layer, TwoSided};
 

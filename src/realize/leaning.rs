@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::source::{Window, ranges};
+use super::window::{Window, ranges};
 use crate::geometry::curve::{AnyCurve, Curve as _, Side, nearest_within};
 use crate::geometry::tessellate::{Density, EdgeProfile, Extrusion, discretize};
 

@@ -22,9 +22,11 @@ mod solid;
 mod source;
 mod subdivide;
 mod swept;
+mod window;
 
 pub use normal_map::normal_maps;
-pub use source::{Source, Sources, Window, sources};
+pub use source::{Source, Sources, sources};
+pub use window::Window;
 
 use glam::DVec3;
 use thiserror::Error;

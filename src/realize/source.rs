@@ -9,7 +9,8 @@ use super::deformation::deformation;
 use super::leaning::Leaning;
 use super::nearest::Field;
 use super::reach::bent;
-use crate::geometry::curve::{AnyCurve, Curve, Domain, Side, nearest_within};
+use super::window::{Window, nearest_near};
+use crate::geometry::curve::{AnyCurve, Curve, Side};
 use crate::geometry::field::Quadric;
 use crate::geometry::mesh::{self, Anchor};
 use crate::geometry::number::{Bounds, hypot};
@@ -48,6 +49,8 @@ pub(super) fn source_count(recipe: &Recipe) -> u32 {
 /// One exact surface under the map that brings it into the written mesh.
 #[derive(Clone, Debug)]
 pub struct Source {
+    /// The shape that says it.
+    shape: ShapeHandle,
     kind: Kind,
     map: DAffine3,
     back: DAffine3,
@@ -116,6 +119,11 @@ impl Sources {
         found
     }
 
+    /// All of them, in the order of the sources of anchors.
+    pub fn iter(&self) -> std::slice::Iter<'_, Source> {
+        self.0.iter()
+    }
+
     /// Whether each has a form of its own, so that distances to it can be told.
     #[must_use]
     pub fn known(&self) -> bool {
@@ -159,17 +167,18 @@ impl Collector<'_> {
                 self.collect(*of, &DAffine3::IDENTITY, true, &mut inner);
                 let Ok(bending) = self.extents.map(handle) else { return };
                 all.extend(inner.into_iter().map(|inner| {
+                    let shape = inner.shape;
                     let kind = Kind::Bent(Box::new(Bent { inner, map: Arc::clone(bending) }));
-                    Source { kind, map, back: map.inverse() }
+                    Source { shape, kind, map, back: map.inverse() }
                 }));
             }
-            Recipe::Solid(solid) => self.collect_solid(solid, &map, bends, all),
+            Recipe::Solid(solid) => self.collect_solid((handle, solid), &map, bends, all),
             Recipe::Subdivided(_) | Recipe::Displaced(_) => {
-                all.push(Source { kind: Kind::Derived, map, back: map.inverse() });
+                all.push(Source { shape: handle, kind: Kind::Derived, map, back: map.inverse() });
             }
             recipe => {
                 let kinds = kinds(recipe, bends).into_iter();
-                all.extend(kinds.map(|kind| Source { kind, map, back: map.inverse() }));
+                all.extend(kinds.map(|kind| Source { shape: handle, kind, map, back: map.inverse() }));
             }
         }
     }
@@ -177,8 +186,14 @@ impl Collector<'_> {
 
 impl Collector<'_> {
     /// The surfaces of the parts of a solid, and the one that it adds.
-    fn collect_solid(&self, solid: &SolidRecipe, map: &DAffine3, bends: bool, all: &mut Vec<Source>) {
-        let one = |kind: Kind, map: DAffine3| Source { kind, map, back: map.inverse() };
+    fn collect_solid(
+        &self,
+        (shape, solid): (ShapeHandle, &SolidRecipe),
+        map: &DAffine3,
+        bends: bool,
+        all: &mut Vec<Source>,
+    ) {
+        let one = |kind: Kind, map: DAffine3| Source { shape, kind, map, back: map.inverse() };
         let parts = |map: &DAffine3, all: &mut Vec<Source>| {
             solid.parts.iter().for_each(|part| self.collect(*part, map, bends, all));
         };
@@ -281,72 +296,17 @@ fn kinds(recipe: &Recipe, bends: bool) -> Vec<Kind> {
     }
 }
 
-/// Parameters of the corners of a triangle: the nearest point is looked for around them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
-    /// u of each corner.
-    pub u: [f64; 3],
-    /// v of each corner.
-    pub v: [f64; 3],
-}
-
-impl Window {
-    fn of(corners: [(f64, f64); 3]) -> Self {
-        Self { u: corners.map(|(u, _)| u), v: corners.map(|(_, v)| v) }
-    }
-}
-
-/// Least and greatest parameter of the corners of a triangle. Where they stand on both sides of the seam of a
-/// closed curve, those after it count from the end of the domain on.
-pub(super) fn unwrapped(domain: Domain, closed: bool, corners: [f64; 3]) -> (f64, f64) {
-    let wide = |values: [f64; 3]| {
-        let low = values.into_iter().fold(f64::INFINITY, f64::min);
-        let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        (low, high)
-    };
-    let (low, high) = wide(corners);
-    let half = domain.span() / 2.0;
-    if !closed || high - low <= half {
-        return (low, high);
-    }
-    wide(corners.map(|value| if value < domain.start + half { value + domain.span() } else { value }))
-}
-
-/// Ranges of a curve's parameter around those of a triangle's corners, as wide again to both sides: a chord
-/// lies inside its arc, and the point nearest to it may belong to the next. Around a closed curve the corners
-/// may stand on both sides of the seam, and a range that leaves the domain comes back at the other end.
-pub(super) fn ranges(curve: &impl Curve, corners: [f64; 3]) -> Vec<(f64, f64)> {
-    let domain = curve.domain();
-    let period = domain.span();
-    let closed = curve.is_closed();
-    let (mut low, mut high) = unwrapped(domain, closed, corners);
-    let margin = (high - low).max(1e-6 * period);
-    // Each range is one stretch between stations or nearly so: over several a few samples might miss the place.
-    let inside = |t: f64| t.clamp(domain.start, domain.end);
-    let around = [(low, high), (low - margin, low), (high, high + margin)];
-    let mut ranges: Vec<(f64, f64)> = around.iter().map(|(from, to)| (inside(*from), inside(*to))).collect();
-    (low, high) = (low - margin, high + margin);
-    if closed && low < domain.start {
-        ranges.push(((low + period).max(domain.start), domain.end));
-    }
-    if closed && high > domain.end {
-        ranges.push((domain.start, (high - period).min(domain.end)));
-    }
-    ranges
-}
-
 fn distance_near(curve: &AnyCurve, point: DVec3, corners: [f64; 3]) -> f64 {
     nearest_near(curve, point, corners).0
 }
 
-/// Distance and parameter of the nearest point around the corners.
-pub(super) fn nearest_near(curve: &impl Curve, point: DVec3, corners: [f64; 3]) -> (f64, f64) {
-    let ranges = ranges(curve, corners);
-    let found = ranges.iter().map(|(from, to)| nearest_within(curve, point, *from, *to));
-    found.fold((f64::INFINITY, corners[0]), |best, next| if next.0 < best.0 { next } else { best })
-}
-
 impl Source {
+    /// The shape that says it: that of a part where the whole is made of parts.
+    #[must_use]
+    pub fn shape(&self) -> ShapeHandle {
+        self.shape
+    }
+
     fn is_known(&self) -> bool {
         match &self.kind {
             Kind::Derived => false,

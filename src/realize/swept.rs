@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::source::{Window, nearest_near, unwrapped};
+use super::window::{Window, nearest_near, unwrapped};
 use crate::geometry::curve::{Domain, Side};
 use crate::geometry::number::hypot;
 use crate::geometry::surface::{Carrier, Plane, Surface as _, SweptWall};

@@ -1,0 +1,219 @@
+// Shows a .glb file by three.js, as it is shipped. Draws when something changes, never otherwise.
+import * as THREE from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
+import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+
+export class Viewer {
+  // Switches, with what stands beside them.
+  options = { wireframe: 'wireframe', normals: 'normals', joints: 'joints' };
+
+  // `picked` is told of clicks on triangles: the asset's key, the index of the mesh, those of the corners.
+  constructor(place, picked) {
+    this.place = place;
+    this.picked = picked;
+    this.on = {};
+    this.renderer = new THREE.WebGLRenderer({ antialias: true });
+    this.renderer.toneMapping = THREE.NeutralToneMapping;
+    this.renderer.setPixelRatio(devicePixelRatio);
+    place.append(this.renderer.domElement);
+    this.scene = new THREE.Scene();
+    this.scene.background = new THREE.Color(0xe6e8ec);
+    const light = new THREE.DirectionalLight(0xffffff, 2);
+    light.position.set(1, 2, 3);
+    this.scene.add(light, this.surroundings());
+    this.camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.addEventListener('change', () => this.draw());
+    this.loader = new GLTFLoader().setMeshoptDecoder(MeshoptDecoder);
+    this.model = null;
+    this.turn = 0;
+    this.normals = new THREE.MeshNormalMaterial({ side: THREE.DoubleSide });
+    this.listen();
+    new ResizeObserver(() => this.resize()).observe(place);
+    this.resize();
+  }
+
+  // Light from all sides: a room that metals reflect, or where a processor does the work of a graphics card, which would
+  // need seconds for that, a sky.
+  surroundings() {
+    const context = this.renderer.getContext();
+    const named = context.getExtension('WEBGL_debug_renderer_info')?.UNMASKED_RENDERER_WEBGL ?? context.RENDERER;
+    if (/swiftshader|llvmpipe|software|basic render/i.test(context.getParameter(named))) {
+      return new THREE.HemisphereLight(0xffffff, 0x8d8578, 2.5);
+    }
+    const rooms = new THREE.PMREMGenerator(this.renderer);
+    this.scene.environment = rooms.fromScene(new RoomEnvironment(), 0.04).texture;
+    this.scene.environmentIntensity = 0.6;
+    rooms.dispose();
+    return new THREE.Group();
+  }
+
+  // Loads an asset; false where a later one came between, or its bytes are gone already.
+  async load(asset) {
+    const turn = ++this.turn;
+    const answer = await fetch(`/asset?key=${asset.key}`);
+    if (answer.status !== 200) return false;
+    const bytes = await answer.arrayBuffer();
+    performance.mark('kiln-bytes', { detail: asset.key });
+    const file = await this.loader.parseAsync(bytes, '');
+    if (turn !== this.turn) {
+      dispose(file.scene);
+      return false;
+    }
+    const first = !this.model;
+    if (this.model) {
+      this.scene.remove(this.model.scene, this.model.joints);
+      dispose(this.model.scene);
+      this.model.joints.dispose?.();
+    }
+    const joints = new THREE.SkeletonHelper(file.scene);
+    this.model = { key: asset.key, file, scene: file.scene, joints, mixer: new THREE.AnimationMixer(file.scene) };
+    file.scene.traverse((object) => {
+      if (object.material) object.userData.kilnMaterial = object.material;
+    });
+    this.scene.add(file.scene, joints);
+    this.unpick();
+    if (first) this.fit();
+    this.clip();
+    this.wear();
+    performance.mark('kiln-loaded', { detail: asset.key });
+    return true;
+  }
+
+  set(name, value) {
+    this.on[name] = value;
+    this.wear();
+  }
+
+  // Puts on what the switches say.
+  wear() {
+    if (!this.model) return;
+    this.model.joints.visible = Boolean(this.on.joints);
+    this.normals.wireframe = Boolean(this.on.wireframe);
+    this.model.scene.traverse((object) => {
+      const own = object.userData.kilnMaterial;
+      if (!own) return;
+      object.material = this.on.normals && object.isMesh ? this.normals : own;
+      for (const material of [own].flat()) material.wireframe = Boolean(this.on.wireframe);
+    });
+    this.draw();
+  }
+
+  // Shows a moment of a clip, -1 for rest.
+  pose(clip, time) {
+    const { model } = this;
+    if (!model) return;
+    const chosen = model.file.animations[clip];
+    if (model.clip !== chosen) {
+      model.mixer.stopAllAction();
+      model.clip = chosen;
+      if (chosen) {
+        const action = model.mixer.clipAction(chosen).setLoop(THREE.LoopOnce);
+        action.clampWhenFinished = true;
+        action.play();
+      }
+    }
+    if (chosen) model.mixer.setTime(time);
+    this.unpick();
+    this.draw();
+  }
+
+  // The whole model in the picture, from where the camera looks.
+  fit() {
+    if (!this.model) return;
+    const box = new THREE.Box3().setFromObject(this.model.scene);
+    const radius = Math.max(box.getSize(new THREE.Vector3()).length() / 2, 1e-6);
+    const way = this.camera.position.clone().sub(this.controls.target);
+    if (way.lengthSq() === 0) way.set(0.57, 0.38, 0.76);
+    const half = THREE.MathUtils.degToRad(this.camera.fov / 2);
+    const narrow = Math.min(1, this.camera.aspect);
+    box.getCenter(this.controls.target);
+    this.camera.position.copy(this.controls.target).addScaledVector(way.normalize(), radius / Math.sin(half) / narrow);
+    this.controls.update();
+    this.draw();
+  }
+
+  // Near and far planes around what there is, wherever the camera stands.
+  clip() {
+    const box = new THREE.Box3().setFromObject(this.model.scene);
+    this.reach = box.isEmpty() ? null : box.getBoundingSphere(new THREE.Sphere());
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.place;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  draw() {
+    if (this.drawing) return;
+    this.drawing = requestAnimationFrame(() => {
+      this.drawing = null;
+      if (this.reach) {
+        const away = this.camera.position.distanceTo(this.reach.center);
+        this.camera.near = Math.max(away - 2 * this.reach.radius, this.reach.radius / 1000, 1e-6);
+        this.camera.far = away + 4 * this.reach.radius;
+        this.camera.updateProjectionMatrix();
+      }
+      this.renderer.render(this.scene, this.camera);
+      if (this.model) performance.mark('kiln-drawn', { detail: this.model.key });
+    });
+  }
+
+  listen() {
+    let start = null;
+    const { domElement } = this.renderer;
+    domElement.addEventListener('pointerdown', (event) => { start = [event.clientX, event.clientY]; });
+    domElement.addEventListener('pointerup', (event) => {
+      const still = start && Math.hypot(event.clientX - start[0], event.clientY - start[1]) < 3;
+      if (still && event.button === 0) this.pick(event);
+    });
+  }
+
+  pick(event) {
+    if (!this.model) return;
+    const { left, top, width, height } = this.renderer.domElement.getBoundingClientRect();
+    const place = new THREE.Vector2(((event.clientX - left) / width) * 2 - 1, 1 - ((event.clientY - top) / height) * 2);
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(place, this.camera);
+    const hit = ray.intersectObject(this.model.scene).find((one) => one.face);
+    this.unpick();
+    this.draw();
+    if (!hit) return;
+    const corners = [hit.face.a, hit.face.b, hit.face.c];
+    const points = corners.map((corner) => {
+      const point = hit.object.getVertexPosition(corner, new THREE.Vector3());
+      return hit.object.localToWorld(point);
+    });
+    const lines = new THREE.BufferGeometry().setFromPoints(points);
+    const look = new THREE.LineBasicMaterial({ color: 0xff3d00, depthTest: false });
+    this.mark = new THREE.LineLoop(lines, look);
+    this.scene.add(this.mark);
+    const mesh = this.model.file.parser.associations.get(hit.object)?.meshes;
+    if (mesh !== undefined) this.picked(this.model.key, mesh, corners);
+  }
+
+  unpick() {
+    if (!this.mark) return;
+    this.scene.remove(this.mark);
+    dispose(this.mark);
+    this.mark = null;
+  }
+}
+
+// Frees what a model has on the graphics card.
+function dispose(root) {
+  root.traverse((object) => {
+    object.geometry?.dispose();
+    object.skeleton?.dispose();
+    for (const material of [object.userData.kilnMaterial ?? object.material ?? []].flat()) {
+      for (const value of Object.values(material)) if (value?.isTexture) value.dispose();
+      material.dispose();
+    }
+  });
+}
