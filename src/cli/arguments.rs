@@ -64,6 +64,8 @@ pub(crate) enum Command {
     Bake(Bake),
     /// Find everything that is wrong with documents, and write nothing
     Check(Check),
+    /// Format documents; comments stay
+    Fmt(Fmt),
     /// Draw a picture of a document or of a .glb file
     Render(Render),
     /// Bake a document on every save, and show it in a page
@@ -129,6 +131,16 @@ pub(crate) struct Bake {
 pub(crate) struct Check {
     #[command(flatten)]
     pub(crate) documents: Documents,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Fmt {
+    /// Documents, folders of them, or `-` for standard input to standard output
+    #[arg(required = true, value_name = "PATH")]
+    pub(crate) paths: Vec<PathBuf>,
+    /// Write nothing; fail where a document is not formatted
+    #[arg(long)]
+    pub(crate) check: bool,
 }
 
 #[derive(Debug, Args)]

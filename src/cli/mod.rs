@@ -7,6 +7,7 @@ mod bake;
 mod check;
 mod dependencies;
 mod describe;
+mod format;
 mod inspect;
 mod output;
 mod project;
@@ -64,6 +65,7 @@ pub fn run() -> ExitCode {
     let outcome = match arguments.command {
         Command::Bake(bake) => bake::run(&bake, &printer),
         Command::Check(check) => check::run(&check, &printer),
+        Command::Fmt(fmt) => format::run(&fmt, &printer),
         Command::Render(render) => render::run(&render, &printer),
         Command::Watch(watch) => watch::run(&watch, &printer),
         Command::Sample(sample) => sample::run(&sample, &printer),

@@ -1,6 +1,6 @@
 //! Which documents the arguments name.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::arguments::Documents;
 use super::output::Printer;
@@ -8,10 +8,15 @@ use crate::project::{Task, collect};
 
 /// The documents that the arguments name; `None` after a complaint.
 pub(crate) fn tasks(documents: &Documents, printer: &Printer) -> Option<Vec<Task>> {
+    tasks_at(&documents.paths, documents.root.as_deref(), printer)
+}
+
+/// The documents at some paths; `None` after a complaint.
+pub(crate) fn tasks_at(paths: &[PathBuf], root: Option<&Path>, printer: &Printer) -> Option<Vec<Task>> {
     let mut tasks = Vec::new();
     let mut good = true;
-    for path in &documents.paths {
-        match collect(path, documents.root.as_deref()) {
+    for path in paths {
+        match collect(path, root) {
             Ok(found) if found.is_empty() => {
                 printer.failure(&format!("no document (.toml) in {}", path.display()), None);
                 good = false;

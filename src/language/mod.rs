@@ -3,6 +3,7 @@
 pub mod diagnostic;
 mod document;
 pub mod expression;
+mod format;
 pub mod source;
 pub mod spec;
 mod suggest;
@@ -10,4 +11,5 @@ pub mod value;
 
 pub use diagnostic::explain;
 pub use document::Document;
+pub use format::format;
 pub use spec::{Spec, reference, schema};

@@ -273,3 +273,35 @@ def test_sample_times_a_curve_and_nothing_else(kiln: Kiln) -> None:
     for more in (["--at", "0.5"], ["--shape", "s"]):
         assert kiln.run("sample", "model.toml", "--curve", "ring", "--time", *more).returncode == 2
     assert kiln.run("sample", "model.toml", "--shape", "s", "--time").returncode == 2
+
+
+def test_documents_are_formatted_and_mean_the_same(kiln: Kiln) -> None:
+    loose = "# a box\n[ shape . s . box ]\nsize=[ 1,1 ,1, ]   # metres\n\n\n"
+    path = kiln.write(loose)
+    assert kiln.run("fmt", "--check", "model.toml").returncode == 1
+    assert path.read_text(encoding="utf-8") == loose
+    assert kiln.run("fmt", "model.toml").returncode == 0
+    assert path.read_text(encoding="utf-8") == "# a box\n[shape.s.box]\nsize = [1, 1, 1]   # metres\n"
+    assert kiln.run("fmt", "--check", ".").returncode == 0
+    assert kiln.run("fmt", ".").stdout == ""
+    assert kiln.run("check", "model.toml").returncode == 0
+
+
+def test_a_stream_is_formatted(kiln: Kiln) -> None:
+    line = [str(kiln.program), "fmt", "-"]
+    done = subprocess.run(line, input=b"a=1#one\n", capture_output=True, check=False)
+    assert (done.returncode, done.stdout) == (0, b"a = 1 #one\n")
+    done = subprocess.run([*line, "--check"], input=b"a=1\n", capture_output=True, check=False)
+    assert (done.returncode, done.stdout) == (1, b"")
+    assert b"not formatted" in done.stderr
+
+
+def test_what_is_no_document_is_not_formatted(kiln: Kiln) -> None:
+    for text, word in ((b"a = [1, 2\n", b"K0"), (b"a = \xff\n", b"UTF-8"), (b"a={ b=1,\n }\n", b"K0")):
+        path = kiln.folder / "model.toml"
+        path.write_bytes(text)
+        done = kiln.run("fmt", "model.toml")
+        assert done.returncode == 1
+        assert word.decode() in done.stderr
+        assert path.read_bytes() == text
+    assert kiln.run("fmt", "none.toml").returncode == 3

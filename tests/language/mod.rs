@@ -3,6 +3,7 @@
 pub(crate) mod cases;
 mod codes;
 mod files;
+mod format;
 mod robust;
 mod schema;
 mod shown;
