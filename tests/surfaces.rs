@@ -36,7 +36,7 @@ fn surfaces(text: &str) -> Vec<AnySurface> {
     let made = compile::model(&document, &files, &Options::default());
     let model = made.unwrap_or_else(|found| panic!("{found}\n{text}"));
     match &model.shapes[0].recipe {
-        Recipe::Patches(patches) => patches.surfaces.clone(),
+        Recipe::Patches { patches, .. } => patches.surfaces.clone(),
         other => panic!("not made of surfaces: {other:?}"),
     }
 }

@@ -2,15 +2,14 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::Builder;
 use super::profile::show;
+use super::{Builder, patch};
 use crate::geometry::curve::{AnyCurve, Transformed};
 use crate::geometry::surface::AnySurface;
 use crate::geometry::surface::coons::{
     CoonsBlend, CoonsError, CoonsSide, CoonsSides, Family, GordonBlend, GordonError, Twist, coons as make,
     gordon as make_network,
 };
-use crate::geometry::tessellate::Patchwork;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, CoonsTwist, Cross, CurveReference};
@@ -80,7 +79,7 @@ impl Builder<'_> {
 }
 
 fn alone(surface: AnySurface) -> Recipe {
-    Recipe::Patches(Patchwork { surfaces: vec![surface], caps: Vec::new() })
+    patch::recipe(vec![surface])
 }
 
 /// A curve that stays at one vector.

@@ -205,7 +205,7 @@ impl Builder<'_> {
         let shape = self.model.shape(handle);
         let (recipe, place) = (shape.recipe.clone(), shape.options.placement);
         let surface = match recipe {
-            Recipe::Patches(patches) if patches.surfaces.len() == 1 => {
+            Recipe::Patches { patches, .. } if patches.surfaces.len() == 1 => {
                 patches.surfaces.into_iter().next().map(BaseSurface::Any)
             }
             Recipe::Trimmed(trimmed) => Some(BaseSurface::Any(trimmed.surface)),

@@ -7,19 +7,21 @@ use super::patch::{MOST_REPORTS, broken_between, continuity};
 use super::profile::show;
 use crate::geometry::mesh;
 use crate::geometry::surface::{
-    AnySurface, PatchContinuity, Rim, Surface as _, SurfaceJoint, SurfaceJoints, SurfaceLine, joints,
+    AnySurface, PatchContinuity, PlacedSurface, Rim, Surface as _, SurfaceJoint, SurfaceJoints, SurfaceLine,
+    joints,
 };
 use crate::geometry::tessellate::Patchwork;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec;
-use crate::model::Recipe;
+use crate::model::{MaterialHandle, Recipe};
 
 /// A shape whose surfaces are joined to others.
 struct Part {
     name: String,
     span: Span,
     placement: DAffine3,
+    material: Option<MaterialHandle>,
     shape: Patchwork,
 }
 
@@ -33,16 +35,10 @@ impl Builder<'_> {
         let parts: Vec<Option<Part>> =
             written.of.iter().enumerate().map(|(index, of)| self.part_to_join(name, index, of)).collect();
         let parts: Vec<Part> = parts.into_iter().collect::<Option<_>>()?;
-        let placement = parts[0].placement;
-        if let Some(moved) = parts.iter().find(|part| part.placement != placement) {
-            let message =
-                format!("{} stands elsewhere than {}: they cannot share a side", moved.name, parts[0].name);
-            let report = Diagnostic::error(Code::ApartSurfaces, message)
-                .at(moved.span, "has another place")
-                .help("write `scale`, `rotate` and `at` at the joined shape, and points of all parts as they stand together");
-            self.report(report);
-            return None;
-        }
+        // What stands at one place is joined there; else each surface goes to its own before.
+        let common = parts[0].placement;
+        let together = parts.iter().all(|part| part.placement == common);
+        let placement = if together { common } else { DAffine3::IDENTITY };
         let mut whole = Patchwork { surfaces: Vec::new(), caps: Vec::new() };
         let mut owners = Vec::new();
         for (index, part) in parts.iter().enumerate() {
@@ -50,22 +46,31 @@ impl Builder<'_> {
             let moved =
                 |rims: &Vec<(u32, Rim)>| rims.iter().map(|(surface, rim)| (first + surface, *rim)).collect();
             whole.caps.extend(part.shape.caps.iter().map(moved));
-            whole.surfaces.extend(part.shape.surfaces.iter().cloned());
+            let surfaces = part.shape.surfaces.iter().cloned();
+            whole.surfaces.extend(surfaces.map(|surface| match together {
+                true => surface,
+                false => AnySurface::Placed(Box::new(PlacedSurface::new(surface, part.placement))),
+            }));
             owners.resize(whole.surfaces.len(), index);
         }
         let found = joints(&whole.surfaces);
         let good = self.check_common_sides(&parts, &owners, (&whole.surfaces, &found));
         let smooth = self.check_joined(written, (&parts, &owners), &found);
-        (good && smooth).then_some((Recipe::Patches(whole), placement))
+        let mut materials: Vec<_> = owners.iter().map(|part| parts[*part].material).collect();
+        if materials.iter().all(Option::is_none) {
+            materials.clear();
+        }
+        (good && smooth).then_some((Recipe::Patches { patches: whole, materials }, placement))
     }
 
     fn part_to_join(&mut self, name: &str, index: usize, of: &spec::ShapeReference) -> Option<Part> {
         let handle = self.shape_of(name, index, of)?;
         let shape = self.model.shape(handle);
         let placement = shape.options.placement;
-        if let Recipe::Patches(patches) = &shape.recipe {
+        if let Recipe::Patches { patches, .. } = &shape.recipe {
             let name = format!("`{}`", shape.name);
-            return Some(Part { name, span: of.span(), placement, shape: patches.clone() });
+            let material = shape.options.material;
+            return Some(Part { name, span: of.span(), placement, material, shape: patches.clone() });
         }
         let report = Diagnostic::error(Code::NoSurface, "this shape is no surface over parameters u and v")
             .at(of.span(), "cannot be joined by its sides")

@@ -3,13 +3,13 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::ruled::places;
-use super::{Builder, placement};
+use super::{Builder, patch, placement};
 use crate::geometry::curve::{AnyCurve, Curve as _, Side, Transformed};
 use crate::geometry::number::Bounds;
 use crate::geometry::surface::{
     Across, AnySurface, CrossEnd, LoftedSurface, MatchError, Matching, gathered, matched,
 };
-use crate::geometry::tessellate::{Patchwork, Rim};
+use crate::geometry::tessellate::Rim;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, Loft, LoftEnd, Profile, Sp};
@@ -63,7 +63,7 @@ impl Builder<'_> {
         match LoftedSurface::new(all, &knots, across) {
             Ok(surface) => {
                 let surfaces = vec![AnySurface::Lofted(Box::new(surface))];
-                Some(Recipe::Patches(Patchwork { surfaces, caps }))
+                Some(patch::capped(surfaces, caps))
             }
             Err(error) => {
                 let message = format!("there is no surface through these profiles: {error}");

@@ -2,12 +2,11 @@
 
 use glam::{DVec2, DVec3};
 
-use super::Builder;
 use super::formula::{Compiled, Compiler};
 use super::profile::show;
+use super::{Builder, patch};
 use crate::geometry::curve::{Domain, Side};
 use crate::geometry::surface::{AnySurface, Closing, FormulaSurface, Surface as _, SurfaceFault, thickened};
-use crate::geometry::tessellate::Patchwork;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{Formula as Written, Parametric, ShapeOptions, Sp};
@@ -71,7 +70,7 @@ impl Builder<'_> {
                 vec![AnySurface::Formula(Box::new(surface))]
             }
         };
-        Some(Recipe::Patches(Patchwork { surfaces, caps: Vec::new() }))
+        Some(patch::recipe(surfaces))
     }
 }
 

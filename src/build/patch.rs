@@ -26,7 +26,12 @@ fn grid<T: Copy>(rows: &Rows<T>) -> Grid<T> {
 }
 
 pub(super) fn recipe(surfaces: Vec<AnySurface>) -> Recipe {
-    Recipe::Patches(Patchwork { surfaces, caps: Vec::new() })
+    capped(surfaces, Vec::new())
+}
+
+/// Surfaces with flat ends, each of which is some sides one after the other.
+pub(super) fn capped(surfaces: Vec<AnySurface>, caps: Vec<Vec<(u32, Rim)>>) -> Recipe {
+    Recipe::Patches { patches: Patchwork { surfaces, caps }, materials: Vec::new() }
 }
 
 fn polynomial(surface: PolynomialSurface) -> AnySurface {

@@ -7,7 +7,9 @@ use super::profile::show;
 use crate::geometry::field::Quadric;
 use crate::geometry::field::quadric::{QuadricForm, QuadricKind};
 use crate::geometry::number::Bounds;
-use crate::geometry::tessellate::{self, ClippedQuadric, Detail, SurfaceDensity, TessellateError};
+use crate::geometry::tessellate::{
+    self, Ball, Clip, ClippedQuadric, Detail, SurfaceDensity, TessellateError,
+};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec;
@@ -22,9 +24,15 @@ impl Builder<'_> {
             written.constant.value,
         );
         let within = written.within.as_ref();
-        let bounds = within.map(|within| Bounds { min: within.min.value, max: within.max.value });
-        let shape = ClippedQuadric { quadric, within: bounds, closed: written.caps.value };
-        let place = within.map_or(span, |within| within.min.span);
+        let clip = within.map(|within| within.clip());
+        let clip = clip.map(|clip| match clip {
+            spec::QuadricClip::Box { min, max } => Clip::Box(Bounds { min: min.value, max: max.value }),
+            spec::QuadricClip::Ball { center, radius } => {
+                Clip::Ball(Ball { center: center.value, radius: radius.value })
+            }
+        });
+        let shape = ClippedQuadric { quadric, within: clip, closed: written.caps.value };
+        let place = within.map_or(span, spec::QuadricWithin::span);
         match fault(&shape, span, place) {
             None => Some(Recipe::Quadric(shape)),
             Some(report) => {
@@ -54,7 +62,8 @@ fn fault(shape: &ClippedQuadric, span: Span, place: Span) -> Option<Diagnostic> 
             let kind = kind.text();
             let article = if kind.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
             let message = format!("this quadric is {article} {kind}, which goes on without end");
-            let help = "write `within = { min = [-1, -1, -1], max = [1, 1, 1] }`";
+            let help =
+                "write `within = { min = [-1, -1, -1], max = [1, 1, 1] }`, or `within = { radius = 1 }`";
             return Some(
                 Diagnostic::error(Code::EndlessQuadric, message).at(span, "needs `within`").help(help),
             );
@@ -68,10 +77,18 @@ fn fault(shape: &ClippedQuadric, span: Span, place: Span) -> Option<Diagnostic> 
         uv: false,
         triangle_limit: 1 << 20,
     };
-    (tessellate::quadric(shape, &detail) == Err(TessellateError::NoArea)).then(|| {
-        let message = format!("this {} does not reach into `within`", form.kind.text());
-        error(message).at(place, "nothing of it is inside").note(where_it_is(&form))
-    })
+    match tessellate::quadric(shape, &detail) {
+        Err(TessellateError::NoArea) => {
+            let message = format!("this {} does not reach into `within`", form.kind.text());
+            Some(error(message).at(place, "nothing of it is inside").note(where_it_is(&form)))
+        }
+        Err(TessellateError::Tangled) if matches!(shape.within, Some(Clip::Ball(_))) => {
+            let message = format!("the ball touches this {} where it cuts it", form.kind.text());
+            let report = error(message).at(place, "touches");
+            Some(report.note(where_it_is(&form)).help("a little larger or smaller `radius` cuts it cleanly"))
+        }
+        _ => None,
+    }
 }
 
 fn where_it_is(form: &QuadricForm) -> String {

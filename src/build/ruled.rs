@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use super::Builder;
 use super::profile::show;
+use super::{Builder, patch};
 use crate::geometry::curve::{AnyCurve, Curve as _, Retimed, Side};
 use crate::geometry::number::Bounds;
 use crate::geometry::surface::{AnySurface, RuledSurface, TranslationalSurface};
-use crate::geometry::tessellate::{Density, Patchwork, Rim, discretize};
+use crate::geometry::tessellate::{Density, Rim, discretize};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{End, Ruled, Translational};
@@ -48,7 +48,7 @@ impl Builder<'_> {
                 caps.push(vec![(0, Rim::Top)]);
             }
         }
-        Some(Recipe::Patches(Patchwork { surfaces: vec![AnySurface::Ruled(Box::new(surface))], caps }))
+        Some(patch::capped(vec![AnySurface::Ruled(Box::new(surface))], caps))
     }
 
     /// The surface of a curve moved along another.
@@ -63,7 +63,7 @@ impl Builder<'_> {
             caps = vec![vec![(0, Rim::Bottom)], vec![(0, Rim::Top)]];
         }
         let surface = AnySurface::Translational(Box::new(TranslationalSurface::new(profile, path)));
-        Some(Recipe::Patches(Patchwork { surfaces: vec![surface], caps }))
+        Some(patch::capped(vec![surface], caps))
     }
 
     /// All curves are open, or all are closed.

@@ -43,7 +43,7 @@ impl Builder<'_> {
     /// The one smooth surface of a recipe.
     fn surface_to_trim(&mut self, recipe: &Recipe, place: Span) -> Option<AnySurface> {
         let report = match recipe {
-            Recipe::Patches(patches) => match patches.surfaces.as_slice() {
+            Recipe::Patches { patches, .. } => match patches.surfaces.as_slice() {
                 [surface] if patches.caps.is_empty() => match TrimmedSurface::first_edge(surface) {
                     None => return Some(surface.clone()),
                     Some(edge) => edged(edge, place),

@@ -48,7 +48,12 @@ pub enum Recipe {
     /// A section carried along a path.
     Sweep(Sweep),
     /// Surfaces by their parameters, alone or joined, with flat ends.
-    Patches(Patchwork),
+    Patches {
+        /// The surfaces.
+        patches: Patchwork,
+        /// For each surface the material of the shape that it was joined from; none where none has one.
+        materials: Vec<Option<MaterialHandle>>,
+    },
     /// A flat face inside closed curves.
     Sheet(Sheet),
     /// Heights over a rectangle.

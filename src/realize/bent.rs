@@ -13,7 +13,7 @@ use crate::geometry::mesh::polygon::newell;
 use crate::geometry::mesh::{PolygonMesh, VertexIndex};
 use crate::geometry::number::sin_cos_degrees;
 use crate::geometry::surface::{Deformation, Rim, Surface as _, SweptSurface};
-use crate::geometry::tessellate::{ClippedQuadric, Patchwork, Revolution, Route};
+use crate::geometry::tessellate::{Clip, ClippedQuadric, Patchwork, Revolution, Route};
 use crate::model::{KeptSide, Model, Recipe, ShapeHandle, SolidOperation, SolidRecipe};
 
 /// A face that is flat, so that its triangles are exact until a map bends them.
@@ -50,7 +50,7 @@ impl Flat {
         /// The six sides, as the numbers of their corners: bit k is the far end of axis k.
         const SIDES: [[usize; 4]; 6] =
             [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
-        let Some(bounds) = shape.within else { return Self::Exact };
+        let Some(Clip::Box(bounds)) = shape.within else { return Self::Exact };
         let pick = |corner: usize, axis: usize| {
             if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] }
         };
@@ -200,7 +200,7 @@ pub(super) fn periods(model: &Model, handle: ShapeHandle, all: &mut Vec<(f64, f6
         }
         Recipe::Trimmed(shape) => all.push(nearest::periods(&shape.surface)),
         Recipe::Wire(curves) => all.extend(curves.iter().map(|curve| (round(curve), NEVER))),
-        Recipe::Patches(patches) => {
+        Recipe::Patches { patches, .. } => {
             all.extend(patches.surfaces.iter().map(nearest::periods));
             all.extend(patches.caps.iter().map(|_| (NEVER, NEVER)));
         }

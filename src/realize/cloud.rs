@@ -39,7 +39,7 @@ pub(super) fn cloud(recipe: &Recipe) -> Vec<DVec3> {
         }
         Recipe::Sheet(sheet) => sheet.outlines.iter().flat_map(points).collect(),
         Recipe::Sweep(sweep) => swept(sweep),
-        Recipe::Patches(patches) => patches.surfaces.iter().flat_map(lattice).collect(),
+        Recipe::Patches { patches, .. } => patches.surfaces.iter().flat_map(lattice).collect(),
         Recipe::Trimmed(shape) => trimmed(shape),
         Recipe::Based(map) => super::height::points_of_based(map),
         Recipe::Perturbed(skin) => skin.samples(),

@@ -12,6 +12,7 @@ mod facets;
 mod height;
 mod leaning;
 mod limit;
+mod material;
 mod motion;
 mod nearest;
 mod node;

@@ -3,6 +3,7 @@
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 use super::limit::{Cost, Spent};
+use super::material::group_by_material;
 use super::shape::{self, Made, Maker};
 use super::{Options, RealizeError, Realized, motion};
 use crate::geometry::mesh;
@@ -50,7 +51,7 @@ fn make_all(
         let mut made = maker.make(*handle, uv).map_err(|error| (*handle, error))?;
         spent.add(Cost::of(&made.mesh).plus(Cost::of_wire(&made.wire)));
         shape::to_metres(&mut made, &model.frame);
-        Ok(shape::group_by_material(made))
+        Ok(group_by_material(made))
     };
     // One shape is made on this thread: waking others costs more than a small shape takes.
     let results: Vec<Result<Made, _>> =

@@ -336,7 +336,7 @@ fn may_cross(model: &Model, handle: ShapeHandle) -> bool {
         matches!(
             recipe,
             Recipe::Sweep(_)
-                | Recipe::Patches(_)
+                | Recipe::Patches { .. }
                 | Recipe::Trimmed(_)
                 | Recipe::Polygons { .. }
                 | Recipe::Deformed { .. }

@@ -30,7 +30,7 @@ pub(super) fn source_count(recipe: &Recipe) -> u32 {
         Recipe::Revolution(_) => 3,
         Recipe::Sweep(sweep) => mesh::index(sweep.outlines.len()) + 2,
         Recipe::Extrusion(extrusion) => mesh::index(extrusion.outlines.len()) + 2,
-        Recipe::Patches(patches) => mesh::index(patches.surfaces.len() + patches.caps.len()),
+        Recipe::Patches { patches, .. } => mesh::index(patches.surfaces.len() + patches.caps.len()),
         Recipe::Polygons { .. }
         | Recipe::Trimmed(_)
         | Recipe::Implicit { .. }
@@ -271,7 +271,7 @@ fn kinds(recipe: &Recipe, bends: bool) -> Vec<Kind> {
             let walls: Vec<Kind> = (0..sweep.outlines.len()).map(wall).collect();
             walls.into_iter().chain(Flat::of_way(&surface).map(flat)).collect()
         }
-        Recipe::Patches(patches) => {
+        Recipe::Patches { patches, .. } => {
             let fields = patches.surfaces.iter().map(|surface| Kind::Patch(Box::new(Field::new(surface))));
             fields.chain(Flat::of_caps(patches).into_iter().map(flat)).collect()
         }
@@ -524,7 +524,9 @@ pub(super) fn extent(recipe: &Recipe) -> Bounds {
         Recipe::Height(map) => super::height::extent(map),
         Recipe::Based(map) => Bounds::of_points(super::height::points_of_based(map)),
         Recipe::TwoSided(body) => super::height::extent_of_two(body),
-        Recipe::Patches(patches) => patches.surfaces.iter().map(lattice).fold(Bounds::EMPTY, Bounds::union),
+        Recipe::Patches { patches, .. } => {
+            patches.surfaces.iter().map(lattice).fold(Bounds::EMPTY, Bounds::union)
+        }
         Recipe::Wire(curves) => curves.iter().map(along).fold(Bounds::EMPTY, Bounds::union),
         Recipe::Quadric(shape) => shape.bounds(),
         Recipe::Implicit { surface, .. } => surface.within,

@@ -57,8 +57,11 @@ pub struct NetworkLine {
 /// All networks by the names of their shapes.
 pub(super) fn networks(model: &Model) -> IndexMap<String, NetworkFacts> {
     let facts = model.shapes.iter().filter_map(|shape| match &shape.recipe {
-        Recipe::Patches(patches) if patches.surfaces.len() > 1 => {
-            Some((shape.name.clone(), network(&patches.surfaces)))
+        Recipe::Patches { patches, .. } => {
+            let facts = network(&patches.surfaces);
+            // A surface of one piece that meets nothing, not even itself, is no network.
+            let many = facts.surfaces > 1 || !facts.joints.is_empty();
+            many.then(|| (shape.name.clone(), facts))
         }
         _ => None,
     });

@@ -55,7 +55,7 @@ fn surfaces(text: &str) -> Vec<AnySurface> {
     let model = kiln::compile::model(&document, &files, &Options::default());
     let model = model.unwrap_or_else(|found| panic!("{found}"));
     let patches = model.shapes.iter().filter_map(|shape| match &shape.recipe {
-        Recipe::Patches(patches) => Some(patches.surfaces.clone()),
+        Recipe::Patches { patches, .. } => Some(patches.surfaces.clone()),
         _ => None,
     });
     patches.flatten().collect()

@@ -48,3 +48,33 @@ fn sides_of_any_kinds_close_a_box() {
     assert_near(facts.volume.expect("closed"), 6.0, 1e-6);
     assert_near(facts.area, 2.0 * (2.0 + 3.0 + 6.0), 1e-6);
 }
+
+/// One side four times, turned by a right angle each time, and a lid: a box of parts that stand at places of their own,
+/// each with its material, though they are one skin.
+#[test]
+fn parts_stand_at_their_own_places_and_keep_their_materials() {
+    let side = "[shape.side]\nmaterial = \"wood\"\n[shape.side.patches]\ndegree = 1\n\
+         control = [[[-1, 0, 1], [1, 0, 1]], [[-1, 3, 1], [1, 3, 1]]]\n";
+    let turned: String = [90, 180, 270]
+        .map(|angle| {
+            format!(
+                "[shape.s{angle}]\nrotate = [0, {angle}, 0]\nmaterial = \"wood\"\n[shape.s{angle}.patches]\n\
+                 degree = 1\ncontrol = [[[-1, 0, 1], [1, 0, 1]], [[-1, 3, 1], [1, 3, 1]]]\n"
+            )
+        })
+        .concat();
+    let lids = "[shape.low]\nmaterial = \"tin\"\n[shape.low.patches]\ndegree = 1\n\
+         control = [[[-1, 0, -1], [1, 0, -1]], [[-1, 0, 1], [1, 0, 1]]]\n\
+         [shape.high]\nat = [0, 3, 0]\nscale = 2\n[shape.high.patches]\ndegree = 1\n\
+         control = [[[-0.5, 0, -0.5], [0.5, 0, -0.5]], [[-0.5, 0, 0.5], [0.5, 0, 0.5]]]\n";
+    let text = format!(
+        "{side}{turned}{lids}[material.wood]\n[material.tin]\n[material.felt]\n[shape.a]\nmaterial = \"felt\"\n\
+         [shape.a.joined]\nof = [\"side\", \"s90\", \"s180\", \"s270\", \"low\", \"high\"]"
+    );
+    let baked = bake(&text);
+    let shape = baked.only();
+    assert!(shape.facts.closed && shape.facts.manifold && shape.facts.components == 1, "{:?}", shape.facts);
+    assert_near(shape.facts.volume.expect("closed"), 12.0, 1e-6);
+    assert_eq!(shape.primitives, 3, "wood, tin and, where a part has none, that of the whole");
+    assert!(shape.deviation.measured.expect("asked for") <= shape.deviation.bound);
+}

@@ -183,7 +183,7 @@ fn surface(text: &str) -> kiln::geometry::surface::AnySurface {
     let model = kiln::compile::model(&document, &files, &Options::default())
         .unwrap_or_else(|found| panic!("{found}"));
     match &model.shapes[0].recipe {
-        Recipe::Patches(patches) => patches.surfaces[0].clone(),
+        Recipe::Patches { patches, .. } => patches.surfaces[0].clone(),
         other => panic!("{other:?}"),
     }
 }

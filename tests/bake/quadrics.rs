@@ -72,6 +72,27 @@ fn solids_and_skins_have_the_measures_of_school() {
     assert_near(planes.only().facts.area, 2.0 * 2.0 * 8.0_f64.sqrt(), 1e-6);
 }
 
+/// What two balls share: 5/12 pi of a radius of 1, with the rim where they meet sharp and every point on one of them.
+#[test]
+fn a_lens_is_what_two_balls_share() {
+    let text = "tolerance = 1e-4\n[shape.a.quadric]\nxx = 1\nyy = 1\nzz = 1\ny = 1\nconstant = -0.75\n\
+         within = { center = [0, 0.5, 0], radius = 1 }\ncaps = true";
+    let baked = bake(text);
+    let (facts, deviation) = (&baked.only().facts, baked.only().deviation);
+    assert!(facts.closed && facts.manifold && facts.genus == Some(0), "{facts:?}");
+    assert_near(facts.volume.expect("closed"), 5.0 * PI / 12.0, 1e-3);
+    assert!(deviation.measured.expect("asked for") <= deviation.bound && deviation.bound <= 1e-4);
+    let away = |[x, y, z]: [f64; 3], center: f64| (x * x + (y - center) * (y - center) + z * z).sqrt() - 1.0;
+    let mesh = baked.glb.named("a");
+    for point in &mesh.positions {
+        let (low, high) = (away(*point, -0.5), away(*point, 0.5));
+        assert!(low.max(high).abs() < 1e-6, "{point:?}: {low} {high}");
+    }
+    // Two normals stand on every point of the rim, 120 degrees apart.
+    let rim = mesh.positions.iter().filter(|point| point[1].abs() < 1e-6).count();
+    assert!(rim > 40 && rim % 2 == 0, "{rim}");
+}
+
 /// The asset of the gallery: one skin, open at foot and top, and columns below it.
 #[test]
 fn the_tower_stands() {

@@ -63,6 +63,31 @@ def test_written_points_satisfy_the_equation(kiln: Kiln, name: str) -> None:
     assert np.abs(points).max() <= 1 + 1e-7
 
 
+@pytest.mark.parametrize("name", KINDS)
+def test_a_ball_holds_what_both_sides_of_a_quadric_share(kiln: Kiln, name: str) -> None:
+    center, radius, tolerance = np.array([0.2, -0.1, 0.15]), 0.9, 2e-3
+    within = f"within = {{ center = {center.tolist()}, radius = {radius} }}"
+    volumes = []
+    for sign in (1.0, -1.0):
+        factors = {key: sign * factor for key, factor in KINDS[name].items()}
+        text = spec(factors, None, tolerance, caps=True).replace("caps =", f"{within}\ncaps =")
+        baked = kiln.bake(text)
+        points, triangles = baked.mesh("a")
+        depth = np.linalg.norm(points - center, axis=1) - radius
+        sums, slopes = value(factors, points)
+        on_quadric = np.minimum(np.abs(sums) / np.maximum(slopes, 1e-300), np.sqrt(np.abs(sums)))
+        # Every point lies on the ball or on the quadric, inside of the ball and where the sum is not positive.
+        assert np.minimum(np.abs(depth), on_quadric).max() <= 1e-6
+        assert depth.max() <= 1e-6
+        assert (sums / np.maximum(slopes, 1e-3)).max() <= 1e-5
+        assert baked.shape("a")["closed"]
+        corners = points[triangles] - center
+        volumes.append(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6)
+        assert volumes[-1] > 0
+    # Chords of both surfaces lie within the tolerance: of the ball, and of the face between, which is no larger.
+    assert sum(volumes) == pytest.approx(4 / 3 * np.pi * radius**3, abs=tolerance * 3 * 4 * np.pi * radius**2)
+
+
 def test_both_halves_of_a_cone_meet_in_its_apex(kiln: Kiln) -> None:
     points, _ = kiln.bake(spec({"xx": 1.0, "yy": -1.0, "zz": 1.0, "y": 0.2, "constant": -0.01}, 1.0, 1e-3)).mesh("a")
     apex = np.array([0.0, 0.1, 0.0])

@@ -64,7 +64,7 @@ fn surfaces() -> Vec<(String, AnySurface)> {
     let model =
         compile::model(&document, &files, &Options::default()).unwrap_or_else(|found| panic!("{found}"));
     let surface = |shape: &kiln::model::Shape| match &shape.recipe {
-        Recipe::Patches(patches) => (shape.name.clone(), patches.surfaces[0].clone()),
+        Recipe::Patches { patches, .. } => (shape.name.clone(), patches.surfaces[0].clone()),
         other => panic!("{other:?}"),
     };
     model.shapes.iter().map(surface).collect()

@@ -3,8 +3,8 @@
 use super::coons::{ThreeSidedSurface, TransfiniteSurface};
 use super::tensor::{PolynomialSurface, RationalSurface};
 use super::{
-    FormulaSurface, LoftedSurface, RuledSurface, SecondJet, SecondRange, Surface, SurfaceJet, ThickSide,
-    TranslationalSurface,
+    FormulaSurface, LoftedSurface, PlacedSurface, RuledSurface, SecondJet, SecondRange, Surface, SurfaceJet,
+    ThickSide, TranslationalSurface,
 };
 use crate::geometry::curve::{Domain, Side};
 
@@ -29,6 +29,8 @@ pub enum AnySurface {
     Formula(Box<FormulaSurface>),
     /// A side of a formula surface that has a thickness.
     Thick(Box<ThickSide>),
+    /// Another one, somewhere else.
+    Placed(Box<PlacedSurface>),
 }
 
 macro_rules! each_kind {
@@ -43,6 +45,7 @@ macro_rules! each_kind {
             AnySurface::ThreeSided($surface) => $body,
             AnySurface::Formula($surface) => $body,
             AnySurface::Thick($surface) => $body,
+            AnySurface::Placed($surface) => $body,
         }
     };
 }

@@ -16,6 +16,7 @@ mod limit;
 mod lofted;
 mod matching;
 mod measure;
+mod placed;
 mod revolved;
 mod rim;
 mod ruled;
@@ -36,6 +37,7 @@ pub use joint::{PatchContinuity, Smoothness, SurfaceJoint, SurfaceJoints, Surfac
 pub use lofted::{Across, CrossEnd, LoftedSurface};
 pub use matching::{MatchError, Matching, matched};
 pub use measure::{SurfaceMeasures, measure};
+pub use placed::PlacedSurface;
 pub use revolved::RevolvedSurface;
 pub use rim::Rim;
 pub use ruled::{RuledSurface, gathered};

@@ -47,7 +47,7 @@ pub use height::{
 pub use patch::{Patchwork, Rim, patchwork};
 pub use perturbed::{NetBase, NetBump, NoSolid, PerturbedNet, PerturbedSkin, SkinFault, perturbed};
 pub use plane::{FlatPlane, plane};
-pub use quadric::{ClippedQuadric, quadric};
+pub use quadric::{Ball, Clip, ClippedQuadric, quadric};
 pub use revolve::{Revolution, revolve};
 pub use rounded::{RoundedBox, rounded_box};
 pub use sheet::{Sheet, sheet};

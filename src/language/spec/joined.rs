@@ -11,7 +11,7 @@ table! {
     /// it, and where the skin closes it is a solid. Each surface must share a side with another one, from end to end.
     "joined" pub Joined {
         /// The surfaces: patches, Bezier triangles, Hermite, B-spline, NURBS, Coons, Gordon, ruled, translational and loft
-        /// surfaces, of any mixture. All stand at one place: `scale`, `rotate` and `at` are written at the joined shape.
+        /// surfaces, of any mixture, each where its own `scale`, `rotate` and `at` put it and of its own material.
         of: Vec<ShapeReference> => Check::items(2);
         /// How smoothly they must join; an error names the shapes whose sides do not.
         continuity: Option<Sp<SpokenContinuity>>;

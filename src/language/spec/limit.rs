@@ -98,7 +98,8 @@ impl Read for Bytes {
     }
 }
 
-fn parse_bytes(text: &str) -> Option<u64> {
+/// The number of bytes that a text such as `500 MB` or `2 GiB` says.
+pub(crate) fn parse_bytes(text: &str) -> Option<u64> {
     let digits = text.bytes().take_while(u8::is_ascii_digit).count();
     let (number, unit) = text.split_at(digits);
     let unit = unit.strip_prefix(' ').unwrap_or(unit);

@@ -101,6 +101,8 @@ pub use import::{FilePath, Import, Up};
 pub use joined::Joined;
 pub use knots::KnotRule;
 pub use limit::Limits;
+#[cfg(feature = "cli")]
+pub(crate) use limit::parse_bytes;
 pub use loft::{Across, Loft, LoftEnd, Matching, PlacedProfile, Profile};
 pub use map::{
     Between, Map, MapCombine, MapDefinition, MapFormula, MapGrid, MapImage, MapNoise, MapOperation,
@@ -124,7 +126,7 @@ pub use primitive::{
     Solid, Sphere, Torus, Tube,
 };
 pub use profile::{Axis, Bevel, BevelEnds, BevelForm, Extrude, Fill, Revolve};
-pub use quadric::{Quadric, Within};
+pub use quadric::{Quadric, QuadricClip, QuadricWithin, Within};
 pub use reach::{Reach, ReachRule};
 pub use reference::{
     CurveReference, Family, FieldReference, MapReference, MaterialName, NodeName, ShapeName, ShapeReference,

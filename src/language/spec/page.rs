@@ -117,6 +117,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
             "coons side",
             "gordon",
             "quadric",
+            "quadric within",
             "within",
             "trimmed",
             "joined",

@@ -39,6 +39,12 @@ impl HalfSpace {
     pub fn depth(&self, point: DVec3) -> f64 {
         self.normal.dot(point) - self.offset
     }
+
+    /// Whether this is the plane between the halves of a cone, which meets both in the apex alone.
+    #[must_use]
+    pub fn touches_apex(&self, form: &QuadricForm) -> bool {
+        form.kind == QuadricKind::Cone && self.normal.cross(form.axes.z_axis).length() < 1e-9
+    }
 }
 
 /// Straight directions are drawn together by this factor: no triangle need be short along them.

@@ -40,6 +40,16 @@ pub struct Patchwork {
     pub caps: Vec<Vec<(u32, Rim)>>,
 }
 
+impl Patchwork {
+    /// The surface that a source of anchors is, or of a flat end the surface of its first side.
+    #[must_use]
+    pub fn owner(&self, source: u32) -> usize {
+        let source = source as usize;
+        let cap = source.checked_sub(self.surfaces.len()).and_then(|cap| self.caps.get(cap)?.first());
+        cap.map_or(source, |(surface, _)| *surface as usize)
+    }
+}
+
 /// Cuts surfaces into triangles. Anchor sources: surface k is k, caps come after the surfaces.
 ///
 /// What encloses a volume shows its outside. Otherwise the normals are du x dv of the first surface of each joined

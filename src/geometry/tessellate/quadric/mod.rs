@@ -1,9 +1,10 @@
-//! Quadrics cut off by a box, alone or as closed bodies.
+//! Quadrics cut off by a box or a ball, alone or as closed bodies.
 //!
 //! Promise: every vertex lies on the quadric to rounding, every line on the plane that cuts it; the bound is proved by
 //! the equation itself. What the cut only touches counts as inside: walls are moved outward by a billionth of their size.
 //! The apex of a cone is a vertex of both of its halves; each triangle has a normal of its own there.
 
+mod ball;
 mod convex;
 mod flat;
 mod judge;
@@ -20,19 +21,50 @@ use crate::geometry::field::quadric::{HalfSpace, QuadricForm, QuadricKind};
 use crate::geometry::field::{Field, Quadric};
 use crate::geometry::number::Bounds;
 use crate::geometry::tessellate::region::Cut;
+pub use ball::Ball;
 pub(super) use judge::greatest;
 use shell::Shell;
-use walled::TRIES;
+use walled::{TRIES, Walled};
 
 /// A quadric and where it ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClippedQuadric {
     /// The quadric; its inside is where it is negative.
     pub quadric: Quadric,
-    /// The box that it ends at; without one only an ellipsoid ends.
-    pub within: Option<Bounds>,
+    /// What it ends at; without it only an ellipsoid ends.
+    pub within: Option<Clip>,
     /// Whether it is the closed surface of all points inside of both.
     pub closed: bool,
+}
+
+/// What a quadric ends at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Clip {
+    /// The sides of a box.
+    Box(Bounds),
+    /// The surface of a ball.
+    Ball(Ball),
+}
+
+impl Clip {
+    /// A box around it.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        match self {
+            Self::Box(bounds) => *bounds,
+            Self::Ball(Ball { center, radius }) => {
+                Bounds { min: *center - DVec3::splat(*radius), max: *center + DVec3::splat(*radius) }
+            }
+        }
+    }
+
+    /// A point in the middle, and how far it reaches from there.
+    fn place(&self) -> (DVec3, f64) {
+        match self {
+            Self::Box(bounds) => (bounds.center(), bounds.diagonal() / 2.0),
+            Self::Ball(ball) => (ball.center, ball.radius),
+        }
+    }
 }
 
 impl ClippedQuadric {
@@ -42,7 +74,10 @@ impl ClippedQuadric {
     /// The polynomial that is zero on the surface of an anchor's source; none for flat faces.
     #[must_use]
     pub fn surface(&self, source: u32) -> Option<Quadric> {
-        (source < SHEETS && !self.form().kind.is_flat()).then_some(self.quadric)
+        match self.within {
+            Some(Clip::Ball(ball)) if source >= SHEETS => Some(ball.quadric()),
+            _ => (source < SHEETS && !self.form().kind.is_flat()).then_some(self.quadric),
+        }
     }
 
     /// Whether an anchor's source is the quadric itself and not a face of the cut.
@@ -56,7 +91,10 @@ impl ClippedQuadric {
     pub fn form(&self) -> QuadricForm {
         self.within.map_or_else(
             || QuadricForm::anywhere(&self.quadric),
-            |bounds| QuadricForm::new(&self.quadric, bounds.center(), bounds.diagonal() / 2.0),
+            |clip| {
+                let (middle, reach) = clip.place();
+                QuadricForm::new(&self.quadric, middle, reach)
+            },
         )
     }
 
@@ -64,7 +102,7 @@ impl ClippedQuadric {
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         let everything = Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
-        let clip = self.within.unwrap_or(everything);
+        let clip = self.within.map_or(everything, |clip| clip.bounds());
         let form = self.form();
         if form.kind != QuadricKind::Ellipsoid {
             return clip;
@@ -140,20 +178,19 @@ pub fn quadric(shape: &ClippedQuadric, detail: &Detail) -> Result<Tessellation, 
 
 fn dressed(shape: &ClippedQuadric, job: &Job) -> Result<Made, TessellateError> {
     let form = shape.form();
-    Ok(match shape.within {
-        Some(bounds) if form.kind.is_flat() => {
-            let negative = |point: DVec3| shape.quadric.value(point) < 0.0;
-            flat::in_walls(&form, &bounds, &negative, job)
-        }
-        Some(bounds) => {
-            let place = (bounds.center(), bounds.diagonal() / 2.0);
-            walled::in_walls(&shape.quadric, &form, &walls(&bounds), place, job)?
-        }
-        None => {
-            let place = (form.origin, form.half.length());
-            walled::in_walls(&shape.quadric, &form, &[], place, job)?
-        }
-    })
+    let negative = |point: DVec3| shape.quadric.value(point) < 0.0;
+    let walled = |walls: &[HalfSpace], place: (DVec3, f64)| {
+        let walled =
+            Walled { quadric: &shape.quadric, form: &form, walls, first_sheet: 0, first_wall: SHEETS };
+        walled::in_walls(&walled, place, job)
+    };
+    match shape.within {
+        Some(Clip::Box(bounds)) if form.kind.is_flat() => Ok(flat::in_walls(&form, &bounds, &negative, job)),
+        Some(Clip::Ball(ball)) if form.kind.is_flat() => ball::flat_in_ball(&form, &ball, &negative, job),
+        Some(Clip::Ball(ball)) => ball::in_ball(&shape.quadric, &form, &ball, job),
+        Some(clip @ Clip::Box(bounds)) => walled(&walls(&bounds), clip.place()),
+        None => walled(&[], (form.origin, form.half.length())),
+    }
 }
 
 /// A shell and how far it is from its source.

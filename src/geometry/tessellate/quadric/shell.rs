@@ -75,6 +75,22 @@ impl Shell {
         }
     }
 
+    /// Vertices of faces that come now are not shared with those before.
+    pub(super) fn part(&mut self) {
+        self.shared.clear();
+    }
+
+    /// Adds all faces of another shell, whose points stay its own.
+    pub(super) fn append(&mut self, other: Self) {
+        let (points, vertices) = (mesh::index(self.points.len()), mesh::index(self.vertices.len()));
+        self.points.extend(other.points);
+        let moved = |vertex: Vertex| Vertex { point: PointIndex(vertex.point.0 + points), ..vertex };
+        self.vertices.extend(other.vertices.into_iter().map(moved));
+        let moved = |corners: [VertexIndex; 3]| corners.map(|corner| VertexIndex(corner.0 + vertices));
+        self.triangles.extend(other.triangles.into_iter().map(moved));
+        self.shared.clear();
+    }
+
     fn longest(&self, face: &Face<'_>, corners: [u32; 3]) -> f64 {
         corners
             .map(|corner| (face.outward)(self.points[corner as usize]).length())

@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::{ClippedQuadric, quadric};
+use super::{Clip, ClippedQuadric, quadric};
 use crate::geometry::field::quadric::QuadricKind;
 use crate::geometry::field::{Field, Quadric};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::number::{Bounds, ln};
 use crate::geometry::tessellate::{Detail, Evidence, SurfaceDensity, TessellateError, Tessellation};
 
-const PI: f64 = core::f64::consts::PI;
+pub(super) const PI: f64 = core::f64::consts::PI;
 
-fn detail(tolerance: f64) -> Detail {
+pub(super) fn detail(tolerance: f64) -> Detail {
     Detail {
         density: SurfaceDensity::Tolerance(tolerance),
         crease_angle: 30.0,
@@ -22,19 +22,19 @@ fn detail(tolerance: f64) -> Detail {
     }
 }
 
-fn axes(squares: [f64; 3], constant: f64) -> Quadric {
+pub(super) fn axes(squares: [f64; 3], constant: f64) -> Quadric {
     Quadric::new(DVec3::from_array(squares), DVec3::ZERO, DVec3::ZERO, constant)
 }
 
-fn cube(half: f64) -> Option<Bounds> {
-    Some(Bounds { min: DVec3::splat(-half), max: DVec3::splat(half) })
+fn cube(half: f64) -> Option<Clip> {
+    Some(Clip::Box(Bounds { min: DVec3::splat(-half), max: DVec3::splat(half) }))
 }
 
-fn boxed(min: [f64; 3], max: [f64; 3]) -> Option<Bounds> {
-    Some(Bounds { min: DVec3::from_array(min), max: DVec3::from_array(max) })
+fn boxed(min: [f64; 3], max: [f64; 3]) -> Option<Clip> {
+    Some(Clip::Box(Bounds { min: DVec3::from_array(min), max: DVec3::from_array(max) }))
 }
 
-fn made(quadric: Quadric, within: Option<Bounds>, closed: bool, tolerance: f64) -> Tessellation {
+pub(super) fn made(quadric: Quadric, within: Option<Clip>, closed: bool, tolerance: f64) -> Tessellation {
     super::quadric(&ClippedQuadric { quadric, within, closed }, &detail(tolerance))
         .unwrap_or_else(|error| panic!("{quadric:?} {within:?} {closed}: {error}"))
 }
@@ -45,16 +45,16 @@ fn corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> + '_ {
         .map(|corners| corners.map(|corner| mesh.points[mesh.vertices[corner.subscript()].point.subscript()]))
 }
 
-fn area(mesh: &Mesh) -> f64 {
+pub(super) fn area(mesh: &Mesh) -> f64 {
     corners(mesh).map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0).sum()
 }
 
-fn volume(mesh: &Mesh) -> f64 {
+pub(super) fn volume(mesh: &Mesh) -> f64 {
     corners(mesh).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
 }
 
 /// Directed edges that have no twin.
-fn open_edges(mesh: &Mesh) -> usize {
+pub(super) fn open_edges(mesh: &Mesh) -> usize {
     let mut balance: BTreeMap<(u32, u32), i32> = BTreeMap::new();
     for corners in &mesh.triangles {
         let [a, b, c] = corners.map(|corner| mesh.vertices[corner.subscript()].point.0);
@@ -67,7 +67,7 @@ fn open_edges(mesh: &Mesh) -> usize {
 }
 
 /// Points lie on the quadric or, of a closed body, on its cut; triangles have areas and look outward.
-fn check(shape: &ClippedQuadric, made: &Tessellation) {
+pub(super) fn check(shape: &ClippedQuadric, made: &Tessellation) {
     let size = made.mesh.bounds().diagonal();
     for vertex in &made.mesh.vertices {
         let point = made.mesh.points[vertex.point.subscript()];
@@ -159,7 +159,7 @@ fn bodies_have_the_volumes_of_their_closed_forms() {
     }
 }
 
-fn turned(quadric: &Quadric, turn: DQuat, origin: DVec3) -> Quadric {
+pub(super) fn turned(quadric: &Quadric, turn: DQuat, origin: DVec3) -> Quadric {
     let rotation = DMat3::from_quat(turn);
     let a = rotation * quadric.a * rotation.transpose();
     let b = rotation * quadric.b;
@@ -167,7 +167,7 @@ fn turned(quadric: &Quadric, turn: DQuat, origin: DVec3) -> Quadric {
     Quadric { a, b: b - (a * origin) * 2.0, c: moved.value(-origin) }
 }
 
-fn every_kind() -> Vec<(QuadricKind, Quadric)> {
+pub(super) fn every_kind() -> Vec<(QuadricKind, Quadric)> {
     let graph = |squares: [f64; 3]| {
         Quadric::new(DVec3::from_array(squares), DVec3::ZERO, DVec3::new(0.1, 0.0, -1.0), 0.2)
     };

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::judge::{FlatChart, SheetChart};
 use super::shell::{Face, Shell};
 use super::skeleton::{Body, Edge, Skeleton};
-use super::{Job, Made, SHEETS, proved};
+use super::{Job, Made, proved};
 use crate::geometry::field::quadric::{HalfSpace, QuadricForm, QuadricKind, Sheet};
 use crate::geometry::field::{Field, Quadric};
 use crate::geometry::mesh;
@@ -17,23 +17,30 @@ use crate::geometry::tessellate::region::{Chart, Fault, NO_LINE, Outline, Place,
 /// Times that lines are cut finer where their chords cross.
 pub(super) const TRIES: usize = 8;
 
-/// The body of a quadric that is not flat inside walls, as it looks around a point within a distance.
+/// A quadric that is not flat and the walls around it.
+pub(super) struct Walled<'a> {
+    pub(super) quadric: &'a Quadric,
+    pub(super) form: &'a QuadricForm,
+    pub(super) walls: &'a [HalfSpace],
+    /// Sources of anchors of the first sheet and of the first wall.
+    pub(super) first_sheet: u32,
+    pub(super) first_wall: u32,
+}
+
+/// The body of a quadric inside walls, as it looks around a point within a distance.
 pub(super) fn in_walls(
-    quadric: &Quadric,
-    form: &QuadricForm,
-    walls: &[HalfSpace],
+    walled: &Walled<'_>,
     (around, size): (DVec3, f64),
     job: &Job,
 ) -> Result<Made, TessellateError> {
+    let Walled { quadric, form, walls, .. } = *walled;
     let (walls, touching) = apart_from_apex(form, walls, size);
     let mut touching = touching;
     let sheets = Sheet::all(form, &walls);
     let mut cuts: Vec<HalfSpace> = Vec::new();
     for limit in sheets.iter().flat_map(Sheet::limits) {
         if !cuts.iter().any(|cut| cut.normal.cross(limit.normal).length() < 1e-9) {
-            // The plane between the halves of a cone meets both in the apex alone.
-            touching
-                .push(form.kind == QuadricKind::Cone && limit.normal.cross(form.axes.z_axis).length() < 1e-9);
+            touching.push(limit.touches_apex(form));
             cuts.push(limit);
         }
     }
@@ -42,7 +49,7 @@ pub(super) fn in_walls(
     let mut job = *job;
     for _ in 0..TRIES {
         let skeleton = body.skeleton(job.closed, &job)?;
-        match dress(&body, &sheets, &skeleton, &job)? {
+        match dress(walled, &body, &sheets, &skeleton, &job)? {
             Ok(made) => return Ok(made),
             Err(Fault::Crossing) => job = job.finer(),
         }
@@ -74,17 +81,56 @@ fn apart_from_apex(form: &QuadricForm, walls: &[HalfSpace], size: f64) -> (Vec<H
 
 /// The faces of a body on its skeleton.
 fn dress(
+    walled: &Walled<'_>,
     body: &Body<'_>,
     sheets: &[Sheet],
     skeleton: &Skeleton,
     job: &Job,
 ) -> Result<Result<Made, Fault>, TessellateError> {
-    let mut bound = skeleton.out;
     let mut shell = Shell::on(skeleton.points.clone());
-    for (index, sheet) in sheets.iter().enumerate() {
-        let places = skeleton.on_sheet(sheet, body.size, |edge| edge.on_quadric);
-        let chart = SheetChart { quadric: body.quadric, sheet };
-        let filled = match fill_face(&chart, &places, &mut shell, job)? {
+    let sheets =
+        Sheets { quadric: body.quadric, all: sheets, first: walled.first_sheet, on: &|edge| edge.on_quadric };
+    let found = match add_sheets(&sheets, skeleton, body.size, &mut shell, job)? {
+        Ok(found) => found,
+        Err(fault) => return Ok(Err(fault)),
+    };
+    if job.closed {
+        for (wall, source) in body.walls.iter().zip(walled.first_wall..) {
+            let places = skeleton.on_wall((source - walled.first_wall) as usize, wall);
+            let filled = match fill_face(&FlatChart, &places, &mut shell, job)? {
+                Ok(filled) => filled,
+                Err(fault) => return Ok(Err(fault)),
+            };
+            let Some((triangles, _)) = filled else { continue };
+            add_wall(&mut shell, wall, &triangles, source);
+        }
+    }
+    Ok(Ok(Made { shell, deviation: proved(found.max(skeleton.out)) }))
+}
+
+/// The sheets of a quadric that are to become faces.
+pub(super) struct Sheets<'a> {
+    pub(super) quadric: &'a Quadric,
+    pub(super) all: &'a [Sheet],
+    /// Source of anchors of the first.
+    pub(super) first: u32,
+    /// Which edges lie on the quadric.
+    pub(super) on: &'a dyn Fn(&Edge) -> bool,
+}
+
+/// Adds the sheets of a quadric; the greatest bound of their triangles.
+pub(super) fn add_sheets(
+    sheets: &Sheets<'_>,
+    skeleton: &Skeleton,
+    size: f64,
+    shell: &mut Shell,
+    job: &Job,
+) -> Result<Result<f64, Fault>, TessellateError> {
+    let mut bound: f64 = 0.0;
+    for (sheet, source) in sheets.all.iter().zip(sheets.first..) {
+        let places = skeleton.on_sheet(sheet, size, sheets.on);
+        let chart = SheetChart { quadric: sheets.quadric, sheet };
+        let filled = match fill_face(&chart, &places, shell, job)? {
             Ok(filled) => filled,
             Err(fault) => return Ok(Err(fault)),
         };
@@ -92,24 +138,13 @@ fn dress(
         bound = bound.max(found);
         shell.add(&Face {
             triangles: &triangles,
-            outward: &|point| body.quadric.gradient(point),
+            outward: &|point| sheets.quadric.gradient(point),
             place: &|_, point| sheet.drop(point),
-            source: mesh::index(index),
+            source,
             shared: !job.uv,
         });
     }
-    if job.closed {
-        for wall in 0..body.walls.len() {
-            let places = skeleton.on_wall(wall, &body.walls[wall]);
-            let filled = match fill_face(&FlatChart, &places, &mut shell, job)? {
-                Ok(filled) => filled,
-                Err(fault) => return Ok(Err(fault)),
-            };
-            let Some((triangles, _)) = filled else { continue };
-            add_wall(&mut shell, &body.walls[wall], &triangles, SHEETS + mesh::index(wall));
-        }
-    }
-    Ok(Ok(Made { shell, deviation: proved(bound) }))
+    Ok(Ok(bound))
 }
 
 /// Adds a flat face.
