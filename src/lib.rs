@@ -35,6 +35,7 @@
 //! | `build` | `geometry`, `motion`, `import`, `language`, `model` |
 //! | `compile` | everything but `cli` |
 //! | `project` | `language` |
+//! | `cache` | `language`, `project` |
 //! | `build_script` | everything but `cli` |
 //! | `cli` | everything |
 //!
@@ -44,6 +45,7 @@
 
 pub mod build;
 pub mod build_script;
+pub mod cache;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod compile;

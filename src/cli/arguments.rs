@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::gltf::Profile;
+use crate::language::spec::parse_bytes;
 use crate::preview::View;
 
 /// Bakes model specs (TOML) into glTF.
@@ -44,6 +45,8 @@ pub(crate) enum Format {
     Text,
     /// One JSON object a line
     Json,
+    /// For people, with annotations for GitHub's workflows
+    Github,
 }
 
 /// When to color.
@@ -82,6 +85,8 @@ pub(crate) enum Command {
     New(New),
     /// Print what is in a .glb file
     Inspect(Inspect),
+    /// Look after the folder of what was baked before
+    Cache(CacheCommand),
     /// Print a completion script for a shell
     Completions(Completions),
 }
@@ -101,6 +106,28 @@ pub(crate) struct Documents {
     /// How many documents are worked on at once [default: one for each core]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) jobs: Option<u16>,
+    /// Work on one of N equal parts of the documents, from 1, so that N machines share them
+    #[arg(long, value_name = "I/N", value_parser = shard)]
+    pub(crate) shard: Option<Shard>,
+}
+
+/// One of several equal parts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shard {
+    /// From 1.
+    pub(crate) number: usize,
+    pub(crate) of: usize,
+}
+
+/// Records of what came of documents.
+#[derive(Debug, Args)]
+pub(crate) struct RecordOptions {
+    /// Write errors and warnings as SARIF too, for code scanning
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sarif: Option<PathBuf>,
+    /// Write what came of each document as a report for `JUnit` too
+    #[arg(long, value_name = "FILE")]
+    pub(crate) junit: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -125,12 +152,52 @@ pub(crate) struct Bake {
     /// Write which files each output was made of, for Make and Ninja
     #[arg(long, value_name = "FILE")]
     pub(crate) depfile: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) cache: CacheOptions,
+    #[command(flatten)]
+    pub(crate) records: RecordOptions,
+}
+
+/// What is remembered of earlier runs.
+#[derive(Debug, Args)]
+pub(crate) struct CacheOptions {
+    /// Take what was baked before from a folder, and keep there what is baked now; `KILN_CACHE` names one too
+    #[arg(long, value_name = "DIR", conflicts_with = "no_cache")]
+    pub(crate) cache: Option<PathBuf>,
+    /// Use no cache, whatever `KILN_CACHE` says
+    #[arg(long)]
+    pub(crate) no_cache: bool,
+    /// How much the folder may take; what was not used for the longest time goes first
+    #[arg(long, value_name = "SIZE", default_value = "1 GB", value_parser = bytes)]
+    pub(crate) cache_limit: u64,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CacheCommand {
+    #[command(subcommand)]
+    pub(crate) action: CacheAction,
+    /// The folder [default: what `KILN_CACHE` names]
+    #[arg(long, global = true, value_name = "DIR")]
+    pub(crate) cache: Option<PathBuf>,
+}
+
+/// What is done with a cache.
+#[derive(Clone, Copy, Debug, Subcommand)]
+pub(crate) enum CacheAction {
+    /// Print how much it holds
+    Stats,
+    /// Take everything out
+    Clear,
+    /// Hash everything, and take out what is broken
+    Verify,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct Check {
     #[command(flatten)]
     pub(crate) documents: Documents,
+    #[command(flatten)]
+    pub(crate) records: RecordOptions,
 }
 
 #[derive(Debug, Args)]
@@ -296,6 +363,18 @@ fn assignment(text: &str) -> Result<(String, String), String> {
         }
         _ => Err("write NAME=VALUE, as in `height=0.3`".to_owned()),
     }
+}
+
+fn shard(text: &str) -> Result<Shard, String> {
+    let shard = text.split_once('/').and_then(|(number, of)| {
+        Some(Shard { number: number.trim().parse().ok()?, of: of.trim().parse().ok()? })
+    });
+    let whole = |shard: &Shard| (1..=shard.of).contains(&shard.number);
+    shard.filter(whole).ok_or_else(|| "a part is written as `1/4`, from 1/4 to 4/4".to_owned())
+}
+
+fn bytes(text: &str) -> Result<u64, String> {
+    parse_bytes(text).ok_or_else(|| "a size is written as `500 MB` or `2 GB`".to_owned())
 }
 
 fn profile(text: &str) -> Result<Profile, String> {

@@ -1,24 +1,25 @@
 //! `kiln bake`: documents into files.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
-use std::sync::Mutex;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use serde_json::json;
 
 use super::Outcome;
 use super::arguments::Bake;
+use super::baked::baked;
+use super::cache;
 use super::dependencies::Dependencies;
 use super::output::Printer;
-use super::project::tasks;
-use crate::compile::{Compiled, Options, compile_profiles};
+use super::project::{Work, each, tasks};
+use super::records::write;
+use super::turns::Message;
+use crate::cache::{Baked, Cache, Hit, Key, Record};
+use crate::compile::{Options, compile_profiles};
+use crate::language::Document;
 use crate::language::source::Files as _;
 use crate::project::{Task, Told, reason, save};
-use crate::report::{DeviationFacts, Kind, Report};
 
 /// Bakes all documents; one that fails does not stop the others.
 pub(crate) fn run(bake: &Bake, printer: &Printer) -> Outcome {
@@ -34,43 +35,18 @@ pub(crate) fn run(bake: &Bake, printer: &Printer) -> Outcome {
         printer.failure(&message, None);
         return Outcome::Files;
     }
-    let progress = progress(tasks.len(), printer);
-    let turn = Mutex::new(Turns::default());
-    let worker = Worker { bake, printer, progress: &progress, turn, dependencies: Dependencies::default() };
-    let outcome = if let [task] = tasks.as_slice() {
-        // Waking a second thread costs more than a small document takes.
-        worker.work(0, task)
-    } else {
-        in_parallel(bake, &tasks, &worker)
+    let worker = Worker {
+        bake,
+        printer,
+        dependencies: Dependencies::default(),
+        cache: cache::opened(&bake.cache, printer),
+        hits: AtomicUsize::new(0),
     };
-    progress.finish_and_clear();
-    outcome.max(write_dependencies(bake, &worker.dependencies, printer))
-}
-
-fn write_dependencies(bake: &Bake, dependencies: &Dependencies, printer: &Printer) -> Outcome {
-    let Some(file) = &bake.depfile else { return Outcome::Good };
-    let folder = file.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    match save(folder, &[(&name, dependencies.text().as_bytes())]) {
-        Ok(()) => Outcome::Good,
-        Err(error) => {
-            printer.failure(&format!("cannot write {}: {}", file.display(), reason(&error)), None);
-            Outcome::Files
-        }
-    }
-}
-
-fn in_parallel(bake: &Bake, tasks: &[Task], worker: &Worker<'_>) -> Outcome {
-    let numbered: Vec<(usize, &Task)> = tasks.iter().enumerate().collect();
-    let all =
-        || numbered.par_iter().map(|(index, task)| worker.work(*index, task)).max().unwrap_or(Outcome::Good);
-    let threads = bake.documents.jobs.map_or(0, usize::from);
-    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(all),
-        Err(_) => {
-            numbered.iter().map(|(index, task)| worker.work(*index, task)).max().unwrap_or(Outcome::Good)
-        }
-    }
+    let work = Work { documents: &bake.documents, records: &bake.records, printer };
+    let outcome = each(&work, &tasks, &|turn, task, messages| worker.document((turn, task), messages));
+    worker.end_cache(tasks.len());
+    let written = bake.depfile.as_ref().map(|file| write(file, &worker.dependencies.text(), printer));
+    outcome.max(written.unwrap_or(Outcome::Good))
 }
 
 /// Two documents whose outputs would be one file.
@@ -88,77 +64,22 @@ fn same_name(tasks: &[Task]) -> Option<String> {
     None
 }
 
-fn progress(count: usize, printer: &Printer) -> ProgressBar {
-    if count < 2 || !printer.draws_progress() {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::with_draw_target(Some(count as u64), ProgressDrawTarget::stderr_with_hz(10));
-    if let Ok(style) = ProgressStyle::with_template("{bar:32} {pos}/{len} {wide_msg}") {
-        bar.set_style(style);
-    }
-    bar
-}
-
-/// What a document's work has to say, and to whom.
-enum Message {
-    Result(String, serde_json::Value),
-    Diagnostics(crate::language::diagnostic::Diagnostics),
-    Failure(String),
-}
-
-/// Messages wait for their turn, so that they are printed in the order of the documents.
-#[derive(Default)]
-struct Turns {
-    next: usize,
-    waiting: BTreeMap<usize, Vec<Message>>,
-}
-
 struct Worker<'a> {
     bake: &'a Bake,
     printer: &'a Printer,
-    progress: &'a ProgressBar,
-    turn: Mutex<Turns>,
     dependencies: Dependencies,
+    cache: Option<Cache>,
+    /// Documents that were found in the cache.
+    hits: AtomicUsize,
 }
 
 impl Worker<'_> {
-    fn work(&self, index: usize, task: &Task) -> Outcome {
-        self.progress.set_message(task.path.clone());
-        let mut messages = Vec::new();
-        let outcome = catch_unwind(AssertUnwindSafe(|| self.document((index, task), &mut messages)))
-            .unwrap_or_else(|_| {
-                messages.push(Message::Failure(format!(
-                    "{}: Kiln failed inside; please report this document as a bug",
-                    task.path
-                )));
-                Outcome::Errors
-            });
-        self.speak(index, messages);
-        self.progress.inc(1);
-        outcome
-    }
-
-    fn speak(&self, index: usize, messages: Vec<Message>) {
-        let Ok(mut turns) = self.turn.lock() else { return };
-        turns.waiting.insert(index, messages);
-        loop {
-            let next = turns.next;
-            let Some(messages) = turns.waiting.remove(&next) else { return };
-            turns.next += 1;
-            self.progress.suspend(|| messages.iter().for_each(|message| self.print(message)));
-        }
-    }
-
-    fn print(&self, message: &Message) {
-        match message {
-            Message::Result(text, object) => self.printer.result(text, object),
-            Message::Diagnostics(list) => self.printer.diagnostics(list),
-            Message::Failure(text) => self.printer.failure(text, None),
-        }
-    }
-
-    /// Bakes a document and its variants.
+    /// Bakes a document and its variants, or takes what was baked before.
     fn document(&self, (index, task): (usize, &Task), messages: &mut Vec<Message>) -> Outcome {
+        let key = self.key(task);
+        if let Some(outcome) = self.known((index, task), &key, messages) {
+            return outcome;
+        }
         let (files, document) = match task.load() {
             Ok(loaded) => loaded,
             Err(error) => {
@@ -182,7 +103,7 @@ impl Worker<'_> {
         }
         let mut outcome = Outcome::Good;
         let mut told = Told::default();
-        let mut outputs = Vec::new();
+        let mut made = Made::default();
         let variants = std::iter::once(None).chain(document.variants().into_iter().map(Some));
         for variant in variants {
             let options = Options {
@@ -195,142 +116,213 @@ impl Worker<'_> {
                 origins: false,
                 profiles: self.bake.profile.clone(),
             };
-            outcome = outcome.max(match compile_profiles(&document, &files, &options) {
-                Ok(compiled) => {
-                    let put = |mut compiled: Compiled| {
+            match compile_profiles(&document, &files, &options) {
+                Ok(all) => {
+                    for mut compiled in all {
                         compiled.warnings =
                             told.only_new(&document, compiled.warnings, options.variant.as_deref());
-                        self.put(task, compiled, (messages, &mut outputs))
-                    };
-                    compiled.into_iter().map(put).max().unwrap_or(Outcome::Good)
+                        let target = self.target(task, &compiled.file);
+                        let asset = baked(&task.path, compiled).map_err(|error| {
+                            Message::Failure(format!("cannot write {}: {}", target.display(), reason(&error)))
+                        });
+                        match asset {
+                            Ok((asset, bytes)) => {
+                                let put = self.put(task, &asset, &bytes, messages);
+                                outcome = outcome.max(put);
+                                self.tell((task, Some(&document)), &asset, put, messages);
+                                made.record.assets.push(asset);
+                                made.bytes.extend(bytes);
+                            }
+                            Err(message) => {
+                                messages.push(message);
+                                outcome = outcome.max(Outcome::Files);
+                            }
+                        }
+                    }
                 }
                 Err(list) => {
                     let list = told.only_new(&document, list, options.variant.as_deref());
                     messages.push(Message::Diagnostics(list));
-                    Outcome::Errors
+                    outcome = outcome.max(Outcome::Errors);
                 }
-            });
+            }
         }
+        let read = files.record();
         if self.bake.depfile.is_some() {
-            let found = files.record().into_iter().filter(|record| record.found);
-            let inputs = found.map(|record| shown(task, &record.path)).collect();
-            self.dependencies.add(index, outputs, inputs);
+            let inputs = read.iter().filter(|record| record.found).map(|record| record.path.as_str());
+            self.depend((index, task), &made.record, inputs);
+        }
+        if let (Some(cache), Outcome::Good) = (&self.cache, outcome) {
+            let bytes: Vec<&[u8]> = made.bytes.iter().map(Vec::as_slice).collect();
+            cache.keep(&key, &read, &made.record, &bytes);
         }
         outcome
     }
 
-    /// Writes an asset, or holds it against the files that there are.
-    fn put(
+    /// Everything but files that outputs depend on.
+    fn key(&self, task: &Task) -> Key {
+        let bake = self.bake;
+        let flags = [bake.no_report, bake.measure].map(|flag| if flag { "yes" } else { "no" });
+        let profiles = bake.profile.iter().map(|profile| profile.name());
+        let sets = bake.documents.set.iter().flat_map(|(name, value)| [name.as_str(), value.as_str()]);
+        Key::new(
+            [task.path.as_str(), task.name()]
+                .into_iter()
+                .chain(flags)
+                .chain(profiles)
+                .chain(["--"])
+                .chain(sets),
+        )
+    }
+
+    /// What was baked of a document before, put where it belongs; none when it is not known, or not whole.
+    fn known(
         &self,
-        task: &Task,
-        compiled: Compiled,
-        (messages, outputs): (&mut Vec<Message>, &mut Vec<String>),
-    ) -> Outcome {
-        let folder = match task.output.rsplit_once('/') {
+        (index, task): (usize, &Task),
+        key: &Key,
+        messages: &mut Vec<Message>,
+    ) -> Option<Outcome> {
+        let cache = self.cache.as_ref()?;
+        let Hit { record, inputs } = cache.find(key, &task.root)?;
+        let mut missing = Vec::new();
+        for asset in &record.assets {
+            let folder = self.folder(task);
+            let absent = asset.files.iter().filter(|file| !cache.is_there(&folder.join(&file.name), file));
+            if self.bake.check {
+                let names: Vec<&str> = absent.map(|file| file.name.as_str()).collect();
+                missing.push((names, Vec::new()));
+            } else {
+                let found: Option<Vec<(&str, Vec<u8>)>> =
+                    absent.map(|file| Some((file.name.as_str(), cache.bytes(file)?))).collect();
+                missing.push((Vec::new(), found?));
+            }
+        }
+        let document = if record.assets.iter().all(|asset| asset.warnings.is_empty()) {
+            None
+        } else {
+            // Warnings show lines of the texts.
+            Some(task.load().ok()?.1.ok()?)
+        };
+        let mut outcome = Outcome::Good;
+        for (asset, (differing, absent)) in record.assets.iter().zip(&missing) {
+            let list: Vec<(&str, &[u8])> =
+                absent.iter().map(|(name, bytes)| (*name, bytes.as_slice())).collect();
+            let put = if differing.is_empty() {
+                self.save(task, &asset.file, &list, messages)
+            } else {
+                self.complain_of(task, differing, messages)
+            };
+            outcome = outcome.max(put);
+            self.tell((task, document.as_ref()), asset, put, messages);
+        }
+        self.hits.fetch_add(1, Ordering::Relaxed);
+        if self.bake.depfile.is_some() {
+            self.depend((index, task), &record, inputs.iter().map(String::as_str));
+        }
+        Some(outcome)
+    }
+
+    fn folder(&self, task: &Task) -> PathBuf {
+        match task.output.rsplit_once('/') {
             Some((folder, _)) => self.bake.out.join(folder),
             None => self.bake.out.clone(),
-        };
-        let target = folder.join(&compiled.file);
-        let failed = |verb: &str, error: std::io::Error| {
-            Message::Failure(format!("cannot {verb} {}: {}", target.display(), reason(&error)))
-        };
-        let files = match files_of(&compiled) {
-            Ok(files) => files,
+        }
+    }
+
+    fn target(&self, task: &Task, file: &str) -> PathBuf {
+        self.folder(task).join(file)
+    }
+
+    /// Writes an asset, or holds it against the files that there are.
+    fn put(&self, task: &Task, asset: &Baked, bytes: &[Vec<u8>], messages: &mut Vec<Message>) -> Outcome {
+        let names = asset.files.iter().map(|file| file.name.as_str());
+        let list: Vec<(&str, &[u8])> = names.zip(bytes.iter().map(Vec::as_slice)).collect();
+        if !self.bake.check {
+            return self.save(task, &asset.file, &list, messages);
+        }
+        let folder = self.folder(task);
+        let other =
+            |(name, bytes): &&(&str, &[u8])| std::fs::read(folder.join(name)).ok().as_deref() != Some(*bytes);
+        let differing: Vec<&str> = list.iter().filter(other).map(|(name, _)| *name).collect();
+        self.complain_of(task, &differing, messages)
+    }
+
+    fn save(&self, task: &Task, file: &str, list: &[(&str, &[u8])], messages: &mut Vec<Message>) -> Outcome {
+        match save(&self.folder(task), list) {
+            Ok(()) => Outcome::Good,
             Err(error) => {
-                messages.push(failed("write", error));
-                return Outcome::Files;
+                let target = self.target(task, file);
+                messages.push(Message::Failure(format!(
+                    "cannot write {}: {}",
+                    target.display(),
+                    reason(&error)
+                )));
+                Outcome::Files
             }
-        };
-        let list: Vec<(&str, &[u8])> =
-            files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_ref())).collect();
-        if self.bake.check {
-            let differs = |name: &&str| {
-                Message::Failure(format!("{} is not what is baked", folder.join(name).display()))
-            };
-            let other = |(name, bytes): &&(&str, &[u8])| {
-                std::fs::read(folder.join(name)).ok().as_deref() != Some(*bytes)
-            };
-            let before = messages.len();
-            messages.extend(list.iter().filter(other).map(|(name, _)| differs(name)));
-            if messages.len() > before {
-                return Outcome::Errors;
-            }
-        } else if let Err(error) = save(&folder, &list) {
-            messages.push(failed("write", error));
-            return Outcome::Files;
         }
-        outputs.extend(files.iter().map(|(name, _)| folder.join(name).display().to_string()));
-        let object = json!({
-            "asset": target.display().to_string(),
-            "spec": task.path,
-            "variant": compiled.report.as_ref().and_then(|report| report.variant.clone()),
-            "profile": compiled.profile.name(),
-            "bytes": compiled.bytes.len(),
-            "triangles": compiled.report.as_ref().map(|report| report.totals.triangles),
-            "deviation": compiled.report.as_ref().and_then(worst),
-        });
-        messages.push(Message::Result(line(&target, &compiled), object));
-        if !compiled.warnings.is_empty() {
-            messages.push(Message::Diagnostics(compiled.warnings));
-        }
-        Outcome::Good
     }
-}
 
-/// The greatest deviation of all shapes.
-fn worst(report: &Report) -> Option<DeviationFacts> {
-    let deviations = report.shapes.values().map(|shape| shape.deviation);
-    deviations.max_by(|a, b| a.bound.total_cmp(&b.bound))
-}
-
-/// An asset in a line.
-pub(super) fn line(target: &Path, compiled: &Compiled) -> String {
-    let bytes = size(compiled.bytes.len());
-    let Some(report) = &compiled.report else { return format!("{}  {bytes}", target.display()) };
-    let accuracy = worst(report).map_or_else(String::new, |deviation| {
-        let how = match deviation.kind {
-            Kind::Exact => "exact".to_owned(),
-            Kind::Proved => format!("within {} (proved)", metres(deviation.bound)),
-            Kind::Sampled => format!("within {} (sampled)", metres(deviation.bound)),
+    /// Names files that are not what they should be.
+    fn complain_of(&self, task: &Task, differing: &[&str], messages: &mut Vec<Message>) -> Outcome {
+        let message = |name: &&str| {
+            Message::Failure(format!("{} is not what is baked", self.target(task, name).display()))
         };
-        let measured =
-            deviation.measured.map_or_else(String::new, |found| format!(", measured {}", metres(found)));
-        format!("  {how}{measured}")
-    });
-    let drawn = match (report.totals.triangles, report.totals.segments) {
-        (triangles, 0) => format!("{triangles} triangles"),
-        (0, segments) => format!("{segments} line segments"),
-        (triangles, segments) => format!("{triangles} triangles  {segments} line segments"),
-    };
-    format!("{}  {drawn}  {bytes}{accuracy}", target.display())
-}
+        messages.extend(differing.iter().map(message));
+        if differing.is_empty() { Outcome::Good } else { Outcome::Errors }
+    }
 
-/// A length for people.
-fn metres(length: f64) -> String {
-    match length {
-        _ if length >= 1.0 => format!("{length:.3} m"),
-        _ if length >= 1e-3 => format!("{:.3} mm", length * 1e3),
-        _ => format!("{:.3} um", length * 1e6),
+    /// Notes what a document was made into, for Make and Ninja.
+    fn depend<'a>(
+        &self,
+        (index, task): (usize, &Task),
+        record: &Record,
+        inputs: impl Iterator<Item = &'a str>,
+    ) {
+        let files = record.assets.iter().flat_map(|asset| &asset.files);
+        let outputs = files.map(|file| self.target(task, &file.name).display().to_string()).collect();
+        self.dependencies.add(index, outputs, inputs.map(|path| shown(task, path)).collect());
+    }
+
+    /// Tells what was baked, where that went well.
+    fn tell(
+        &self,
+        (task, document): (&Task, Option<&Document>),
+        asset: &Baked,
+        put: Outcome,
+        messages: &mut Vec<Message>,
+    ) {
+        if put != Outcome::Good {
+            return;
+        }
+        let target = self.target(task, &asset.file).display().to_string();
+        let mut facts = asset.facts.clone();
+        facts["asset"] = json!(target);
+        messages.push(Message::Result(format!("{target}  {}", asset.line), facts));
+        if let (Some(document), false) = (document, asset.warnings.is_empty()) {
+            messages.push(Message::Diagnostics(document.diagnostics(asset.warnings.clone())));
+        }
+    }
+
+    /// Notes what is to be kept of the cache, and tells how much of it was used.
+    fn end_cache(&self, documents: usize) {
+        let Some(cache) = &self.cache else { return };
+        if let Some(trouble) = cache.finish() {
+            let message = format!("the cache cannot be written: {trouble}");
+            self.printer.warning(&message);
+        }
+        if self.printer.verbose {
+            let hits = self.hits.load(Ordering::Relaxed);
+            let text = format!("cache: {hits} of {documents} documents were baked before");
+            self.printer.result(&text, &json!({ "cache": { "hits": hits, "documents": documents } }));
+        }
     }
 }
 
-fn size(bytes: usize) -> String {
-    match bytes as f64 {
-        bytes if bytes >= 1e6 => format!("{:.1} MB", bytes / 1e6),
-        bytes if bytes >= 1e3 => format!("{:.1} kB", bytes / 1e3),
-        bytes => format!("{bytes} B"),
-    }
-}
-
-/// The file and its report.
-pub(super) fn files_of(compiled: &Compiled) -> std::io::Result<Vec<(String, Cow<'_, [u8]>)>> {
-    let mut files = vec![(compiled.file.clone(), Cow::Borrowed(compiled.bytes.as_slice()))];
-    if let Some(report) = &compiled.report {
-        let mut text = serde_json::to_vec_pretty(report)?;
-        text.push(b'\n');
-        files.push((format!("{}.report.json", compiled.file.trim_end_matches(".glb")), Cow::Owned(text)));
-    }
-    Ok(files)
+/// What came of a document, and the bytes of all its files.
+#[derive(Default)]
+struct Made {
+    record: Record,
+    bytes: Vec<Vec<u8>>,
 }
 
 /// The path of an input from the working directory, where it lies in that.

@@ -5,60 +5,58 @@ use serde_json::json;
 use super::Outcome;
 use super::arguments::Check;
 use super::output::Printer;
-use super::project::tasks;
+use super::project::{Work, each, tasks};
+use super::turns::Message;
 use crate::compile::{Options, compile};
-use crate::project::{Told, reason};
+use crate::project::{Task, Told, reason};
 
 /// Checks all documents, to the end of the pipeline: what passes here can be baked.
 pub(crate) fn run(check: &Check, printer: &Printer) -> Outcome {
     let Some(tasks) = tasks(&check.documents, printer) else { return Outcome::Files };
+    let work = Work { documents: &check.documents, records: &check.records, printer };
+    each(&work, &tasks, &|_, task, messages| document(check, task, messages))
+}
+
+fn document(check: &Check, task: &Task, messages: &mut Vec<Message>) -> Outcome {
+    let (files, document) = match task.load() {
+        Ok(loaded) => loaded,
+        Err(error) => {
+            messages.push(Message::Failure(format!("{}: {}", task.path, reason(&error))));
+            return Outcome::Files;
+        }
+    };
+    let document = match document {
+        Ok(document) => document,
+        Err(list) => {
+            messages.push(Message::Diagnostics(list));
+            return Outcome::Errors;
+        }
+    };
+    if task.found && document.is_library() {
+        return Outcome::Good;
+    }
     let mut outcome = Outcome::Good;
-    for task in &tasks {
-        let (files, document) = match task.load() {
-            Ok(loaded) => loaded,
-            Err(error) => {
-                printer.failure(&format!("{}: {}", task.path, reason(&error)), None);
-                outcome = outcome.max(Outcome::Files);
-                continue;
-            }
+    let mut told = Told::default();
+    for variant in std::iter::once(None).chain(document.variants().into_iter().map(Some)) {
+        let options = Options {
+            variant,
+            overrides: check.documents.set.clone(),
+            name: task.name().to_owned(),
+            path: task.path.clone(),
+            ..Options::default()
         };
-        let document = match document {
-            Ok(document) => document,
+        let list = match compile(&document, &files, &options) {
+            Ok(compiled) => compiled.warnings,
             Err(list) => {
-                printer.diagnostics(&list);
-                outcome = outcome.max(Outcome::Errors);
-                continue;
+                outcome = Outcome::Errors;
+                list
             }
         };
-        if task.found && document.is_library() {
-            continue;
-        }
-        let mut good = true;
-        let mut told = Told::default();
-        for variant in std::iter::once(None).chain(document.variants().into_iter().map(Some)) {
-            let options = Options {
-                variant,
-                overrides: check.documents.set.clone(),
-                name: task.name().to_owned(),
-                path: task.path.clone(),
-                ..Options::default()
-            };
-            match compile(&document, &files, &options) {
-                Ok(compiled) => {
-                    let list = told.only_new(&document, compiled.warnings, options.variant.as_deref());
-                    printer.diagnostics(&list);
-                }
-                Err(list) => {
-                    printer.diagnostics(&told.only_new(&document, list, options.variant.as_deref()));
-                    good = false;
-                }
-            }
-        }
-        if good {
-            printer.result(&format!("{}  good", task.path), &json!({ "spec": task.path, "good": true }));
-        } else {
-            outcome = outcome.max(Outcome::Errors);
-        }
+        messages.push(Message::Diagnostics(told.only_new(&document, list, options.variant.as_deref())));
+    }
+    if outcome == Outcome::Good {
+        let object = json!({ "spec": task.path, "good": true });
+        messages.push(Message::Result(format!("{}  good", task.path), object));
     }
     outcome
 }

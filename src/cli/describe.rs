@@ -38,7 +38,7 @@ pub(crate) fn explain(explain: &Explain, printer: &Printer) -> Outcome {
     };
     let explanation = crate::language::explain(code);
     match printer.format {
-        Format::Text => printer.raw(&format!("{}\n", explanation.trim_end())),
+        Format::Text | Format::Github => printer.raw(&format!("{}\n", explanation.trim_end())),
         Format::Json => {
             let object = json!({ "code": code.text(), "title": code.title(), "explanation": explanation });
             printer.raw(&format!("{object}\n"));

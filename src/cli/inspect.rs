@@ -56,7 +56,7 @@ pub(crate) fn run(inspect: &Inspect, printer: &Printer) -> Outcome {
     });
     match printer.format {
         Format::Json => printer.raw(&format!("{object}\n")),
-        Format::Text => {
+        Format::Text | Format::Github => {
             let text = serde_json::to_string_pretty(&object).unwrap_or_default();
             printer.raw(&format!("{text}\n"));
         }

@@ -4,6 +4,8 @@
 
 mod arguments;
 mod bake;
+mod baked;
+mod cache;
 mod check;
 mod dependencies;
 mod describe;
@@ -11,12 +13,14 @@ mod format;
 mod inspect;
 mod output;
 mod project;
+mod records;
 mod render;
 mod sample;
 mod sample_curve;
 mod sample_surface;
 mod starter;
 mod timed;
+mod turns;
 mod watch;
 
 use std::process::ExitCode;
@@ -74,6 +78,7 @@ pub fn run() -> ExitCode {
         Command::Explain(explain) => describe::explain(&explain, &printer),
         Command::New(new) => starter::run(&new, &printer),
         Command::Inspect(inspect) => inspect::run(&inspect, &printer),
+        Command::Cache(command) => cache::run(&command, &printer),
         Command::Completions(completions) => describe::completions(&completions),
     };
     let outcome = if output::all_printed() { outcome } else { outcome.max(Outcome::Files) };

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde_json::{Value, json};
 
 use super::arguments::{Color, Common, Format};
+use super::records::annotation;
 use crate::language::diagnostic::Diagnostics;
 
 /// Whether something that was to be printed is lost.
@@ -41,9 +42,8 @@ impl Printer {
     /// A result: text for people, or one JSON object.
     pub(crate) fn result(&self, text: &str, object: &Value) {
         match self.format {
-            Format::Text if self.quiet => {}
-            Format::Text => self.raw(&format!("{text}\n")),
-            Format::Json if self.quiet => {}
+            _ if self.quiet => {}
+            Format::Text | Format::Github => self.raw(&format!("{text}\n")),
             Format::Json => self.raw(&format!("{object}\n")),
         }
     }
@@ -66,6 +66,13 @@ impl Printer {
         }
         match self.format {
             Format::Text => self.complain(&list.render(self.color)),
+            Format::Github => {
+                self.complain(&list.render(self.color));
+                let items = list.to_json();
+                for item in items.as_array().into_iter().flatten() {
+                    self.raw(&format!("{}\n", annotation(item)));
+                }
+            }
             Format::Json => {
                 let items = list.to_json();
                 for item in items.as_array().into_iter().flatten() {
@@ -78,16 +85,30 @@ impl Printer {
     /// Something wrong that has no place in a document.
     pub(crate) fn failure(&self, message: &str, help: Option<&str>) {
         let message = printable(message);
+        let object = json!({ "severity": "error", "message": message, "help": help });
         match self.format {
-            Format::Text => {
+            Format::Text | Format::Github => {
+                if self.format == Format::Github {
+                    self.raw(&format!("{}\n", annotation(&object)));
+                }
                 let help = help.map_or_else(String::new, |help| format!("\nhelp: {help}"));
                 self.complain(&format!("error: {message}{help}\n"));
             }
             Format::Json => {
-                let object =
-                    json!({ "diagnostic": { "severity": "error", "message": message, "help": help } });
-                self.raw(&format!("{object}\n"));
+                self.raw(&format!("{}\n", json!({ "diagnostic": object })));
             }
+        }
+    }
+
+    /// Something that a person should know, though all goes on.
+    pub(crate) fn warning(&self, message: &str) {
+        let message = printable(message);
+        let object = json!({ "severity": "warning", "message": message });
+        match self.format {
+            _ if self.quiet => {}
+            Format::Text => self.complain(&format!("warning: {message}\n")),
+            Format::Github => self.raw(&format!("{}\n", annotation(&object))),
+            Format::Json => self.raw(&format!("{}\n", json!({ "diagnostic": object }))),
         }
     }
 
@@ -98,7 +119,7 @@ impl Printer {
 
     /// Whether progress may be drawn: a person watches and wants it.
     pub(crate) fn draws_progress(&self) -> bool {
-        self.format == Format::Text && !self.quiet && std::io::stderr().is_terminal()
+        self.format != Format::Json && !self.quiet && std::io::stderr().is_terminal()
     }
 }
 

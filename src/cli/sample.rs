@@ -103,7 +103,7 @@ fn of_shape(name: &str, model: &Model, sample: &Sample) -> Result<Value, String>
         let known: Vec<&str> = model.shapes.iter().map(|shape| shape.name.as_str()).collect();
         format!("there is no shape `{name}`; there is: {}", known.join(", "))
     })?;
-    if let Recipe::Patches(patches) = &shape.recipe {
+    if let Recipe::Patches { patches, .. } = &shape.recipe {
         if let (true, [surface]) = (sample.time, patches.surfaces.as_slice()) {
             return Ok(timed::of_surface(name, surface, sample.count));
         }

@@ -9,7 +9,7 @@ use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 use super::seen::Seen;
 use crate::cli::arguments::Watch;
-use crate::cli::bake;
+use crate::cli::baked::line;
 use crate::compile::{Compiled, Options, compile_profiles};
 use crate::geometry::number::Bounds;
 use crate::language::Document;
@@ -145,7 +145,7 @@ impl Asset {
 
     /// What there is to say of it, in a line.
     pub(super) fn line(&self) -> String {
-        bake::line(self.compiled.file.as_ref(), &self.compiled)
+        format!("{}  {}", self.compiled.file, line(&self.compiled))
     }
 
     /// Its clips, with their seconds.

@@ -25,7 +25,7 @@ use serde_json::json;
 
 use super::Outcome;
 use super::arguments::Watch;
-use super::bake;
+use super::baked::{line, report_of};
 use super::output::Printer;
 use super::project::task;
 use crate::compile::Compiled;
@@ -166,15 +166,16 @@ impl Watcher<'_> {
                 "bytes": compiled.bytes.len(),
                 "milliseconds": milliseconds,
             });
-            let text = format!("{}  in {milliseconds:.1} ms", bake::line(&target, compiled));
+            let text = format!("{}  {}  in {milliseconds:.1} ms", target.display(), line(compiled));
             self.printer.result(&text, &object);
         }
     }
 }
 
 fn write(folder: &Path, compiled: &Compiled) -> std::io::Result<()> {
-    let files = bake::files_of(compiled)?;
-    let list: Vec<(&str, &[u8])> =
-        files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_ref())).collect();
+    let report = report_of(compiled)?;
+    let asset = (compiled.file.as_str(), compiled.bytes.as_slice());
+    let report = report.as_ref().map(|(name, text)| (name.as_str(), text.as_slice()));
+    let list: Vec<(&str, &[u8])> = std::iter::once(asset).chain(report).collect();
     save(folder, &list)
 }

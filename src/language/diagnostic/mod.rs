@@ -10,10 +10,12 @@ pub use code::Code;
 pub use explain::{Example, example, explain};
 pub use list::Diagnostics;
 
+use serde::{Deserialize, Serialize};
+
 use crate::language::source::Span;
 
 /// How bad it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Severity {
     /// The document cannot be baked.
     Error,
@@ -22,7 +24,7 @@ pub enum Severity {
 }
 
 /// A place and what is to be said of it.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Label {
     /// The place.
     pub span: Span,
@@ -33,7 +35,7 @@ pub struct Label {
 }
 
 /// A change of the text that would mend it.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Suggestion {
     /// What to replace; empty to insert.
     pub span: Span,
@@ -46,7 +48,7 @@ pub struct Suggestion {
 /// One error or warning.
 ///
 /// The message is lower case without a full stop and names the value; the help says what to write instead.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,

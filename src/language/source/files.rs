@@ -24,6 +24,8 @@ pub struct FileRecord {
     pub path: String,
     /// Whether it could be read.
     pub found: bool,
+    /// The hash of the bytes that were read; none also where they were not the same each time.
+    pub hash: Option<blake3::Hash>,
 }
 
 /// Why a file could not be read.
@@ -132,18 +134,27 @@ fn is_special_on_windows(part: &str) -> bool {
     DEVICES.contains(&stem.as_str()) || numbered || trimmed
 }
 
+/// For each path the hash of what was read, if it could be; and whether it was the same each time.
 #[derive(Debug, Default)]
-struct Record(Mutex<BTreeMap<String, bool>>);
+struct Record(Mutex<BTreeMap<String, (Option<blake3::Hash>, bool)>>);
 
 impl Record {
-    fn add(&self, path: &str, found: bool) {
+    fn add(&self, path: &str, read: Result<&[u8], &FileError>) {
+        let hash = read.ok().map(blake3::hash);
         let mut seen = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        seen.insert(path.to_owned(), found);
+        let (known, same) = seen.entry(path.to_owned()).or_insert((hash, true));
+        *same &= *known == hash;
+        *known = known.or(hash);
     }
 
     fn list(&self) -> Vec<FileRecord> {
         let seen = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        seen.iter().map(|(path, found)| FileRecord { path: path.clone(), found: *found }).collect()
+        let record = |(path, (hash, same)): (&String, &(Option<blake3::Hash>, bool))| FileRecord {
+            path: path.clone(),
+            found: hash.is_some(),
+            hash: hash.filter(|_| *same),
+        };
+        seen.iter().map(record).collect()
     }
 }
 
@@ -197,7 +208,7 @@ impl DiskFiles {
 impl Files for DiskFiles {
     fn read(&self, path: &str) -> Result<Arc<[u8]>, FileError> {
         let bytes = self.read_inside(path);
-        self.record.add(path, bytes.is_ok());
+        self.record.add(path, bytes.as_deref());
         bytes
     }
 
@@ -241,7 +252,7 @@ impl MemoryFiles {
 impl Files for MemoryFiles {
     fn read(&self, path: &str) -> Result<Arc<[u8]>, FileError> {
         let found = join("", path).and_then(|path| self.files.get(&path).cloned().ok_or(FileError::Missing));
-        self.record.add(path, found.is_ok());
+        self.record.add(path, found.as_deref());
         found
     }
 

@@ -1,0 +1,184 @@
+//! What was baked before, under the content of all that went into it.
+//!
+//! The key of a document names the compiler, the document's path and all options. Its manifest lists sets of inputs, every
+//! file that was asked for with the hash of its bytes or as missing, and for each set what came of it: a record. Records
+//! and outputs are objects, stored under the hash of their bytes.
+//!
+//! Promise: what is found is what a bake would give. Every object is hashed before it is used; what is broken, cut off or
+//! gone counts as not found and is made again. Any number of processes may use one folder, and be killed at any moment:
+//! files appear whole or not at all. A folder that cannot be written costs its use and nothing else. Not promised: that a
+//! file is read again whose size, times and number the system reports as they were; a change that keeps all of them is not
+//! seen.
+
+mod manifest;
+mod record;
+mod stamp;
+mod store;
+
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use blake3::Hash;
+
+use crate::language::source::{DiskFiles, FileRecord, Files as _};
+use manifest::Manifest;
+pub use record::{Baked, OutputFile, Record};
+use stamp::Stamps;
+use store::Store;
+pub use store::{Stats, Verified};
+
+/// What a document is baked with; equal keys with equal inputs give equal outputs.
+#[derive(Clone, Debug)]
+pub struct Key(Hash);
+
+impl Key {
+    /// The key of this compiler and the parts in their order.
+    #[must_use]
+    pub fn new<'a>(parts: impl IntoIterator<Item = &'a str>) -> Self {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(compiler().as_bytes());
+        for part in parts {
+            // Lengths keep `ab` + `c` apart from `a` + `bc`.
+            hasher.update(&(part.len() as u64).to_le_bytes());
+            hasher.update(part.as_bytes());
+        }
+        Self(hasher.finalize())
+    }
+}
+
+/// The hash of the program that runs: another build is another compiler.
+fn compiler() -> Hash {
+    static COMPILER: std::sync::OnceLock<Hash> = std::sync::OnceLock::new();
+    *COMPILER.get_or_init(|| {
+        let own = std::env::current_exe().and_then(std::fs::read);
+        let bytes = own.unwrap_or_else(|_| env!("CARGO_PKG_VERSION").as_bytes().to_vec());
+        blake3::hash(&bytes)
+    })
+}
+
+/// A folder of what was baked. One for all threads.
+#[derive(Debug)]
+pub struct Cache {
+    store: Store,
+    stamps: Stamps,
+    /// The first trouble with writing; the rest would be the same.
+    trouble: Mutex<Option<String>>,
+}
+
+/// What is known of a document.
+#[derive(Clone, Debug)]
+pub struct Hit {
+    /// What came of it.
+    pub record: Record,
+    /// The paths from the root of all files that it was made of.
+    pub inputs: Vec<String>,
+}
+
+impl Cache {
+    /// The cache in a folder, which is made where it is missing; `limit` is how many bytes it may take.
+    ///
+    /// # Errors
+    /// When the folder cannot be made, or holds other things.
+    pub fn open(folder: &Path, limit: u64) -> std::io::Result<Self> {
+        let store = Store::open(folder, limit)?;
+        let stamps = Stamps::load(&store);
+        Ok(Self { store, stamps, trouble: Mutex::default() })
+    }
+
+    /// What came of a document when all its inputs were as they are now.
+    #[must_use]
+    pub fn find(&self, key: &Key, root: &Path) -> Option<Hit> {
+        let files = DiskFiles::new(root).ok()?;
+        let manifest = Manifest::read(&self.store, &key.0)?;
+        let same = |path: &str, hash: Option<Hash>| {
+            let full = files.root().join(path);
+            self.stamps.hash(&full, || files.read(path).ok().map(|bytes| blake3::hash(&bytes))) == hash
+        };
+        let entry = manifest.find(same)?;
+        let bytes = self.store.object(&entry.record)?;
+        let record = serde_json::from_slice(&bytes).ok()?;
+        self.store.touch_manifest(&key.0);
+        let inputs = entry.inputs.iter().filter(|input| input.hash.is_some());
+        Some(Hit { record, inputs: inputs.map(|input| input.path.clone()).collect() })
+    }
+
+    /// The bytes of an output, whole and unbroken.
+    #[must_use]
+    pub fn bytes(&self, file: &OutputFile) -> Option<Vec<u8>> {
+        self.store.object(&Hash::from_hex(&file.hash).ok()?)
+    }
+
+    /// Whether a file on disk holds what an output is.
+    #[must_use]
+    pub fn is_there(&self, path: &Path, file: &OutputFile) -> bool {
+        let found = self.stamps.hash(path, || std::fs::read(path).ok().map(|bytes| blake3::hash(&bytes)));
+        found.is_some_and(|found| Hash::from_hex(&file.hash).is_ok_and(|hash| hash == found))
+    }
+
+    /// Keeps what came of a document: `files` are the bytes of the record's outputs, `read` what was asked for meanwhile.
+    /// A file that was read twice with different bytes leaves nothing to keep.
+    pub fn keep(&self, key: &Key, read: &[FileRecord], record: &Record, files: &[&[u8]]) {
+        if read.iter().any(|file| file.found && file.hash.is_none()) {
+            return;
+        }
+        if let Err(error) = self.write(key, read, record, files) {
+            let mut trouble = self.trouble.lock().unwrap_or_else(PoisonError::into_inner);
+            trouble.get_or_insert(error.to_string());
+        }
+    }
+
+    fn write(&self, key: &Key, read: &[FileRecord], record: &Record, files: &[&[u8]]) -> std::io::Result<()> {
+        for bytes in files {
+            self.store.put(bytes)?;
+        }
+        let hash = self.store.put(&serde_json::to_vec(record)?)?;
+        // What another process wrote meanwhile can be lost here; it would then be baked once more.
+        let mut manifest = Manifest::read(&self.store, &key.0).unwrap_or_default();
+        manifest.add(read, hash);
+        manifest.write(&self.store, &key.0)
+    }
+
+    /// Ends a run: notes what files looked like, and takes away what was not used for the longest time where the limit is
+    /// passed. What went wrong with the folder, if anything did.
+    #[must_use]
+    pub fn finish(&self) -> Option<String> {
+        let ended = self.stamps.save(&self.store).and_then(|()| self.store.trim());
+        let mut trouble = self.trouble.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Err(error) = ended {
+            trouble.get_or_insert(error.to_string());
+        }
+        trouble.take()
+    }
+}
+
+/// How much a cache holds.
+///
+/// # Errors
+/// When there is none in the folder, or it cannot be read.
+pub fn stats(folder: &Path) -> std::io::Result<Stats> {
+    Store::existing(folder)?.stats()
+}
+
+/// Takes everything out of a cache.
+///
+/// # Errors
+/// When there is none in the folder, or it cannot be emptied.
+pub fn clear(folder: &Path) -> std::io::Result<Stats> {
+    Store::existing(folder)?.clear()
+}
+
+/// Hashes everything in a cache, and takes out what is broken.
+///
+/// # Errors
+/// When there is none in the folder, or it cannot be read.
+pub fn verify(folder: &Path) -> std::io::Result<Verified> {
+    Store::existing(folder)?.verify()
+}
+
+/// Where a cache is when nobody says: `kiln` in the user's folder for such, if there is one.
+#[must_use]
+pub fn default_folder() -> Option<PathBuf> {
+    let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    let home = || set("HOME").map(|home| home.join(".cache"));
+    set("XDG_CACHE_HOME").or_else(|| set("LOCALAPPDATA")).or_else(home).map(|folder| folder.join("kiln"))
+}

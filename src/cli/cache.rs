@@ -1,0 +1,72 @@
+//! `kiln cache`, and which cache a command uses.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+
+use super::Outcome;
+use super::arguments::{CacheAction, CacheCommand, CacheOptions};
+use super::baked::size;
+use super::output::Printer;
+use crate::cache::{Cache, Stats, clear, stats, verify};
+use crate::project::reason;
+
+/// The folder that an argument or the environment names.
+fn folder(written: Option<&PathBuf>) -> Option<PathBuf> {
+    let named = || std::env::var_os("KILN_CACHE").filter(|value| !value.is_empty()).map(PathBuf::from);
+    written.cloned().or_else(named)
+}
+
+/// The cache that a command uses, if any. One that cannot be used costs a warning and nothing else.
+pub(crate) fn opened(options: &CacheOptions, printer: &Printer) -> Option<Cache> {
+    if options.no_cache {
+        return None;
+    }
+    let folder = folder(options.cache.as_ref())?;
+    match Cache::open(&folder, options.cache_limit) {
+        Ok(cache) => Some(cache),
+        Err(error) => {
+            printer.warning(&format!("no cache in {}: {}", folder.display(), reason(&error)));
+            None
+        }
+    }
+}
+
+/// Looks after a cache.
+pub(crate) fn run(command: &CacheCommand, printer: &Printer) -> Outcome {
+    let Some(folder) = folder(command.cache.as_ref()) else {
+        printer.failure("no cache is named", Some("write `--cache DIR`, or set KILN_CACHE"));
+        return Outcome::Usage;
+    };
+    let done = match command.action {
+        CacheAction::Stats => stats(&folder).map(|found| tell(&folder, "holds", &found, printer)),
+        CacheAction::Clear => clear(&folder).map(|found| tell(&folder, "held", &found, printer)),
+        CacheAction::Verify => verify(&folder).map(|found| {
+            let outcome = tell(&folder, "holds", &found.whole, printer);
+            if found.broken == 0 {
+                return outcome;
+            }
+            let files = if found.broken == 1 { "file is" } else { "files are" };
+            printer.failure(&format!("{} broken {files} taken out", found.broken), None);
+            Outcome::Errors
+        }),
+    };
+    done.unwrap_or_else(|error| {
+        printer.failure(&format!("{}: {}", folder.display(), reason(&error)), None);
+        Outcome::Files
+    })
+}
+
+fn tell(
+    folder: &Path,
+    verb: &str,
+    Stats { documents, objects, bytes }: &Stats,
+    printer: &Printer,
+) -> Outcome {
+    let whole = usize::try_from(*bytes).unwrap_or(usize::MAX);
+    let text =
+        format!("{} {verb} {documents} documents, {objects} objects, {}", folder.display(), size(whole));
+    let object = json!({ "cache": folder.display().to_string(), "documents": documents, "objects": objects, "bytes": bytes });
+    printer.result(&text, &object);
+    Outcome::Good
+}
