@@ -42,6 +42,8 @@ pub struct Options {
     pub measure: bool,
     /// Keep where the triangles of the file are defined.
     pub origins: bool,
+    /// Keep how far each triangle is from the exact surface.
+    pub deviations: bool,
     /// For whom files are; where empty, for whom the document says, and without that, for all.
     pub profiles: Vec<Profile>,
 }
@@ -59,6 +61,9 @@ pub struct Compiled {
     pub report: Option<Report>,
     /// Where its triangles are defined, when that was asked for.
     pub origins: Option<Origins>,
+    /// When that was asked for: for each mesh of the file how far its triangles are from the exact surface, metres, at the
+    /// places of [`FAN`](crate::geometry::number::FAN); none for a mesh of surfaces that have no form of their own.
+    pub deviations: Vec<Option<Vec<[f32; 13]>>>,
     /// What a person should know though nothing is wrong.
     pub warnings: Diagnostics,
 }
@@ -219,7 +224,7 @@ impl Made<'_> {
         realize::normal_maps(&built.model, &mut scene, &shapes).map_err(|errors| refusals(built, errors))?;
         let checked = scene::check::check(&scene).map_err(|error| vec![unwritable(&error, built)])?;
         let file = file_name(options, profile);
-        let written = gltf::write(checked, profile, options.measure || options.origins);
+        let written = gltf::write(checked, profile, options.measure || options.origins || options.deviations);
         let meshes: Vec<usize> = scene.meshes.iter().map(|mesh| mesh.geometry).collect();
         // From here on the bytes speak for themselves; the scene's memory is needed no more.
         drop(scene);
@@ -240,9 +245,15 @@ impl Made<'_> {
             warnings.extend(beyond_bound(&report, &shapes, built));
             Some(report)
         };
+        let deviations = if options.deviations {
+            let maps = report::deviation_maps(&written, &built.model, &shapes).map_err(unmeasured)?;
+            meshes.iter().map(|geometry| maps[*geometry].clone()).collect()
+        } else {
+            Vec::new()
+        };
         let origins = options.origins.then(|| Origins::new((built, &shapes), meshes, &written));
         let warnings = self.document.diagnostics(warnings);
-        Ok(Compiled { bytes: written.bytes, file, profile, report, origins, warnings })
+        Ok(Compiled { bytes: written.bytes, file, profile, report, origins, deviations, warnings })
     }
 }
 
@@ -490,6 +501,12 @@ fn unwritable(error: &SceneError, built: &Built) -> Diagnostic {
     }
 }
 
+fn unmeasured(error: report::ReportError) -> Vec<Diagnostic> {
+    let message = format!("the written file cannot be read back: {error}");
+    let report = Diagnostic::error(Code::NothingToShow, message).at(Span::NONE, "");
+    vec![report.help("this is a bug of Kiln; please report it with the document")]
+}
+
 fn measured(
     written: &gltf::Written,
     model: &Model,
@@ -497,15 +514,7 @@ fn measured(
     about: &About<'_>,
     spec: &Spec,
 ) -> Result<Report, Vec<Diagnostic>> {
-    let report = report::measure(written, model, shapes, about);
-    let mut report = report.map_err(|error| {
-        let message = format!("the written file cannot be read back: {error}");
-        vec![
-            Diagnostic::error(Code::NothingToShow, message)
-                .at(Span::NONE, "")
-                .help("this is a bug of Kiln; please report it with the document"),
-        ]
-    })?;
+    let mut report = report::measure(written, model, shapes, about).map_err(unmeasured)?;
     let mut held = Vec::new();
     let mut failed = Vec::new();
     for assertion in &spec.asserts {

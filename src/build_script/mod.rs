@@ -225,6 +225,7 @@ impl Build {
                         no_report: !self.report,
                         measure: false,
                         origins: false,
+                        deviations: false,
                         profiles: self.profiles.clone(),
                     };
                     let folder = task.output.rsplit_once('/').map_or("", |(folder, _)| folder);

@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use crate::gltf::Profile;
 use crate::language::spec::parse_bytes;
 use crate::preview::View;
+use crate::preview::heat::Heat;
 
 /// Bakes model specs (TOML) into glTF.
 #[derive(Debug, Parser)]
@@ -224,6 +225,10 @@ pub(crate) struct Render {
     /// Pixels of each view
     #[arg(long, value_name = "N|WIDTHxHEIGHT", default_value = "1024", value_parser = pixels)]
     pub(crate) size: (u32, u32),
+    /// Show numbers as colors, with their scale: deviation (from the true surface, for documents), curvature, uv-stretch,
+    /// texel-density, or weights:JOINT
+    #[arg(long, value_name = "WHAT", value_parser = heat)]
+    pub(crate) heat: Option<Heat>,
     /// How light is reflected
     #[arg(long, value_enum, default_value_t = ShadingName::Standard)]
     pub(crate) shading: ShadingName,
@@ -380,6 +385,17 @@ fn bytes(text: &str) -> Result<u64, String> {
 fn profile(text: &str) -> Result<Profile, String> {
     let names: Vec<&str> = Profile::NAMED.iter().map(|(name, _)| *name).collect();
     Profile::named(text).ok_or_else(|| format!("write one of {}", names.join(", ")))
+}
+
+fn heat(text: &str) -> Result<Heat, String> {
+    match text.split_once(':') {
+        Some(("weights", joint)) if !joint.is_empty() => Ok(Heat::Weights(joint.to_owned())),
+        None if text == "deviation" => Ok(Heat::Deviation),
+        None if text == "curvature" => Ok(Heat::Curvature),
+        None if text == "uv-stretch" => Ok(Heat::UvStretch),
+        None if text == "texel-density" => Ok(Heat::TexelDensity),
+        _ => Err("write deviation, curvature, uv-stretch, texel-density, or weights:JOINT".to_owned()),
+    }
 }
 
 fn view(text: &str) -> Result<View, String> {

@@ -114,6 +114,7 @@ impl Worker<'_> {
                 no_report: self.bake.no_report,
                 measure: self.bake.measure,
                 origins: false,
+                deviations: false,
                 profiles: self.bake.profile.clone(),
             };
             match compile_profiles(&document, &files, &options) {

@@ -11,6 +11,7 @@ use super::project::task;
 use crate::compile::{Options, compile};
 use crate::gltf::Profile;
 use crate::preview::asset::{self, Asset};
+use crate::preview::heat::{Heat, HeatMap, Measured};
 use crate::preview::lines::{Ink, draw_lines, postscript, svg};
 use crate::preview::{Camera, Look, Moment, Picture, Projection, Shading, Stage, View, draw_picture};
 use crate::project::{reason, save};
@@ -57,7 +58,10 @@ fn picture(render: &Render, printer: &Printer) -> Result<(), Fault> {
     if ending == "apng" && !moves {
         return Err(usage("an .apng moves: write --turntable N, or --clip NAME without --time"));
     }
-    let bytes = bytes(render, printer)?;
+    if render.heat.is_some() && (drawn || plays) {
+        return Err(usage("--heat makes pictures of one moment: write a .png, or an .apng with --turntable"));
+    }
+    let (bytes, deviations) = bytes(render, printer)?;
     let asset = asset::read(&bytes)
         .map_err(|error| (Some(format!("{}: {error}", render.file.display())), Outcome::Errors))?;
     for note in &asset.notes {
@@ -66,11 +70,21 @@ fn picture(render: &Render, printer: &Printer) -> Result<(), Fault> {
     let file = if plays {
         clip(render, &asset)?
     } else {
-        let stage = stage(&asset, render, render.time.unwrap_or(0.0))?;
+        let mut stage = stage(&asset, render, render.time.unwrap_or(0.0))?;
+        if let Some(heat) = &render.heat {
+            let map = HeatMap::new(heat, (&asset, &stage), &deviations);
+            let map = map.map_err(|error| (Some(error.to_string()), Outcome::Errors))?;
+            let (title, high) = (heat.title(), map.high);
+            printer.result(
+                &format!("{title}: {} to {high:.6}, at most {:.6}", map.low, map.greatest),
+                &json!({ "heat": title, "low": map.low, "high": high, "greatest": map.greatest }),
+            );
+            stage.heat = Some(map);
+        }
         match render.turntable {
             Some(count) => turntable(render, &asset, &stage, count)?,
             None if drawn => lines(render, &stage, &ending).into_bytes(),
-            None => still(render, &asset, &stage).png().map_err(unwritten)?,
+            None => legended(render, &stage, still(render, &asset, &stage)).png().map_err(unwritten)?,
         }
     };
     let folder = out.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
@@ -94,8 +108,19 @@ fn named(file: &Path) -> &std::ffi::OsStr {
     file.file_name().unwrap_or(file.as_os_str())
 }
 
-/// The bytes to draw: of a `.glb` file as they are, of a document as it is baked.
-fn bytes(render: &Render, printer: &Printer) -> Result<Vec<u8>, Fault> {
+/// A picture with the scale of its colors, where numbers are shown.
+fn legended(render: &Render, stage: &Stage, picture: Picture) -> Picture {
+    match (&stage.heat, &render.heat) {
+        (Some(map), Some(heat)) => {
+            picture.with_legend(&heat.title(), (map.low, map.high, map.greatest), render.background)
+        }
+        _ => picture,
+    }
+}
+
+/// The bytes to draw: of a `.glb` file as they are, of a document as it is baked, with the distances of its triangles from
+/// the true surface where those are shown.
+fn bytes(render: &Render, printer: &Printer) -> Result<(Vec<u8>, Vec<Option<Measured>>), Fault> {
     let file = render.file.display();
     let unread = |error: std::io::Error| (Some(format!("{file}: {}", reason(&error))), Outcome::Files);
     if render.file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("glb")) {
@@ -103,7 +128,7 @@ fn bytes(render: &Render, printer: &Printer) -> Result<Vec<u8>, Fault> {
             let message = "--variant and --set are for documents; a .glb file is drawn as it is";
             return Err((Some(message.to_owned()), Outcome::Usage));
         }
-        return std::fs::read(&render.file).map_err(unread);
+        return Ok((std::fs::read(&render.file).map_err(unread)?, Vec::new()));
     }
     let task =
         task(&render.file, render.root.as_deref()).map_err(|message| (Some(message), Outcome::Files))?;
@@ -116,6 +141,7 @@ fn bytes(render: &Render, printer: &Printer) -> Result<Vec<u8>, Fault> {
         no_report: true,
         measure: false,
         origins: false,
+        deviations: render.heat == Some(Heat::Deviation),
         profiles: vec![Profile::Core],
     };
     let compiled = document.and_then(|document| compile(&document, &files, &options));
@@ -126,7 +152,7 @@ fn bytes(render: &Render, printer: &Printer) -> Result<Vec<u8>, Fault> {
     if !compiled.warnings.is_empty() {
         printer.diagnostics(&compiled.warnings);
     }
-    Ok(compiled.bytes)
+    Ok((compiled.bytes, compiled.deviations))
 }
 
 fn stage(asset: &Asset, render: &Render, time: f64) -> Result<Stage, Fault> {
@@ -179,7 +205,7 @@ fn turntable(render: &Render, asset: &Asset, stage: &Stage, count: u16) -> Resul
     let pictures: Vec<Picture> = (0..count)
         .map(|k| {
             let camera = Camera::turning(&stage.bounds, view(k), look.projection, look.size);
-            draw_picture(asset, stage, &camera, &look)
+            legended(render, stage, draw_picture(asset, stage, &camera, &look))
         })
         .collect();
     // Once around takes four seconds, however many pictures there are.

@@ -13,6 +13,8 @@
 pub mod asset;
 mod camera;
 mod color;
+pub mod heat;
+mod legend;
 mod light;
 pub mod lines;
 mod picture;

@@ -30,6 +30,9 @@ pub(super) struct Shader<'a> {
 /// Color of lines, linear.
 const LINE: Vec3 = Vec3::new(0.02, 0.02, 0.025);
 
+/// Color of triangles on which nothing could be measured, linear.
+const UNMEASURED: Vec3 = Vec3::splat(0.4);
+
 /// What the back of a surface that has none is multiplied with: it is not drawn in engines, and here it is red.
 const BACK: Vec3 = Vec3::new(0.75, 0.12, 0.10);
 
@@ -63,7 +66,7 @@ impl<'a> Shader<'a> {
             vertices: Vec::new(),
             opaque,
         };
-        if look.shadows && look.shading != Shading::Normals {
+        if look.shadows && look.shading != Shading::Normals && stage.heat.is_none() {
             shader.shadow =
                 Some(Shadow::new(stage, lights[0].towards, &|name, shares| shader.let_through(name, shares)));
         }
@@ -83,7 +86,7 @@ impl<'a> Shader<'a> {
 
     /// Opacity of a face in the middle of a pixel.
     pub(super) fn opacity(&self, name: u32, place: DVec2) -> f32 {
-        if self.opaque || name as usize >= self.stage.triangles.len() {
+        if self.opaque || self.stage.heat.is_some() || name as usize >= self.stage.triangles.len() {
             return 1.0;
         }
         if self.material(name).cutoff == Cutoff::Opaque {
@@ -138,6 +141,11 @@ impl<'a> Shader<'a> {
             return LINE;
         }
         let hit = self.hit(name, place);
+        if let Some(heat) = &self.stage.heat {
+            // So little shade that colors are still those of the legend.
+            let facing = hit.across.dot(self.camera.towards(hit.point)).abs();
+            return heat.color(name, hit.shares).unwrap_or(UNMEASURED) * single(0.8 + 0.2 * facing);
+        }
         let material = self.material(name);
         let smooth = mixed(&hit, |vertex| vertex.normal).normalize_or(hit.across);
         let side = if hit.front { 1.0 } else { -1.0 };

@@ -7,6 +7,7 @@ use glam::{DMat3, DMat4, DVec3};
 use thiserror::Error;
 
 use super::asset::{Asset, Part};
+use super::heat::HeatMap;
 use crate::geometry::number::Bounds;
 
 /// A file at a moment, in meters.
@@ -22,6 +23,8 @@ pub struct Stage {
     pub pieces: Vec<Piece>,
     /// The box around all vertices that are used.
     pub bounds: Bounds,
+    /// Numbers that are shown as colors, in place of the materials.
+    pub heat: Option<HeatMap>,
 }
 
 /// A corner of triangles.
@@ -112,6 +115,7 @@ impl Stage {
             lines: Vec::new(),
             pieces: Vec::new(),
             bounds: Bounds::of_points([]),
+            heat: None,
         };
         for node in order {
             let Some(mesh) = nodes[node].mesh.and_then(|mesh| asset.meshes.get(mesh)) else { continue };

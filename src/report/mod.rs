@@ -16,7 +16,7 @@ mod quadrics;
 mod surfaces;
 
 pub use assertion::{Check, Fault};
-pub use deviation::measure_deviation;
+pub use deviation::{deviation_maps, measure_deviation};
 pub use heights::HeightFacts;
 pub use joints::JointFacts;
 pub use motion::{ClipFacts, PoseFacts, PosedVertex, ReachFacts, ReachFrame, SkinFacts};

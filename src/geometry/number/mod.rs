@@ -6,6 +6,7 @@
 
 mod angle;
 mod elementary;
+mod fan;
 mod noise;
 mod symmetric;
 mod tolerance;
@@ -15,6 +16,7 @@ pub use angle::{cos_degrees, sin_cos_degrees, sin_degrees, tan_degrees};
 pub use elementary::{
     acos, asin, asinh, atan, atan2, cbrt, cos, cosh, exp, hypot, ln, pow, sin, sin_cos, sinh, tan, tanh,
 };
+pub use fan::{FAN, in_fan};
 pub use noise::{noise, noise_gradient};
 pub use symmetric::{PrincipalAxes, principal_axes};
 pub use tolerance::{Bounds, single_rounding};
