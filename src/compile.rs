@@ -4,6 +4,7 @@ mod motion;
 mod notice;
 mod origin;
 mod solid;
+mod state;
 mod subdivide;
 
 use notice::noticed;
@@ -90,7 +91,7 @@ pub fn compile_profiles(
 ) -> Result<Vec<Compiled>, Diagnostics> {
     let fail = |list: Vec<Diagnostic>| document.diagnostics(list);
     let (spec, mut warnings) = document.spec(options.variant.as_deref(), &options.overrides)?;
-    let built = build::model(&spec, &options.name, files).map_err(fail)?;
+    let built = state::model(document, &spec, files, options)?;
     warnings.extend(built.warnings.iter().cloned());
     let profiles = profiles(&spec, options);
     if let Some(same) = same_file(document, &profiles) {
@@ -195,12 +196,16 @@ impl Made<'_> {
         let mut realized = realized.map_err(|errors| refusals(built, errors))?;
         for geometry in &mut realized.scene.geometries {
             geometry.tolerance = geometry.tolerance.map(|tolerance| tolerance / coarser);
+            for target in &mut geometry.targets {
+                target.tolerance = target.tolerance.map(|tolerance| tolerance / coarser);
+            }
         }
         let Realized { scene, shapes, loose, notes } = &realized;
         let mut found: Vec<Diagnostic> =
             notes.iter().map(|(shape, note)| noticed(built, *shape, note)).collect();
         found.extend(loose.iter().map(|one| motion::loose(built, one)));
         found.extend(beyond_tolerance(scene, shapes, built));
+        found.extend(state::beyond_tolerance(scene, shapes, built));
         Ok((Surfaces { realized, share }, found))
     }
 
@@ -276,8 +281,7 @@ fn too_coarse(profile: Profile, coarse: &optimize::TooCoarse, spec: &Spec) -> Di
 /// Everything that is wrong with the document.
 pub fn model(document: &Document, files: &dyn Files, options: &Options) -> Result<Model, Diagnostics> {
     let (spec, _) = document.spec(options.variant.as_deref(), &options.overrides)?;
-    let built = build::model(&spec, &options.name, files).map_err(|list| document.diagnostics(list))?;
-    Ok(built.model)
+    state::model(document, &spec, files, options).map(|built| built.model)
 }
 
 /// The curve of a name with all its parts, for `sample`; none when there is no such curve.
@@ -330,7 +334,8 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
     if let RealizeError::Subdivide { shape, cage, fault } = error {
         return subdivide::refused(built, *shape, *cage, fault);
     }
-    if let Some(report) = motion::refused(built, shape, error) {
+    if let Some(report) = motion::refused(built, shape, error).or_else(|| state::refused(built, shape, error))
+    {
         return report;
     }
     let name = &built.model.shape(shape).name;
@@ -405,6 +410,9 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
         }
         RealizeError::Unweighted { .. } | RealizeError::SkinnedWire { .. } => {
             (Code::Unweighted, "see its skin")
+        }
+        RealizeError::MorphedWire | RealizeError::Topology { .. } | RealizeError::State { .. } => {
+            (Code::BadMorph, "see its states")
         }
         RealizeError::Solid { .. } => (Code::NoSolid, "see the parts of it"),
         RealizeError::Subdivide { .. } => (Code::BadCage, "see its cage"),
@@ -485,6 +493,7 @@ fn unwritable(error: &SceneError, built: &Built) -> Diagnostic {
         SceneError::TexturedWire(name, _) => (Code::TexturedWire, named(name)),
         SceneError::NoUv(name, _) => (Code::Conflict, named(name)),
         SceneError::Animation(..) | SceneError::Skin(..) => (Code::NotFinite, None),
+        SceneError::Morph(name, ..) => (Code::NotFinite, named(name)),
         SceneError::NotFinite(name) | SceneError::NotUnit(name, _) => (Code::NotFinite, named(name)),
         _ => (Code::NothingToShow, None),
     };

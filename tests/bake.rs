@@ -15,6 +15,7 @@ mod heights;
 mod hostile;
 mod joined;
 mod lofts;
+mod morphs;
 mod motion;
 mod mutation;
 mod nets;

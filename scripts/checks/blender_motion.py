@@ -29,6 +29,7 @@ class Rest:
 
     items: dict[str, Matrix]
     bones: dict[tuple[str, str], Matrix]
+    weights: dict[tuple[str, str], float]
 
     @classmethod
     def of_scene(cls) -> Rest:
@@ -38,6 +39,7 @@ class Rest:
         return cls(
             {item.name: item.matrix_basis.copy() for item in objects},
             {names: bone.matrix_basis.copy() for names, bone in bones.items()},
+            {(item.name, key.name): key.value for item in objects for key in keys(item)},
         )
 
     def restore(self) -> None:
@@ -46,12 +48,23 @@ class Rest:
             item.matrix_basis = self.items[item.name]
             for bone in item.pose.bones if item.pose else []:
                 bone.matrix_basis = self.bones[item.name, bone.name]
+            for key in keys(item):
+                key.value = self.weights[item.name, key.name]
+
+
+def keys(item: bpy.types.Object) -> list[bpy.types.ShapeKey]:
+    """The shape keys of an object that stand for morph targets."""
+    shapes = getattr(item.data, "shape_keys", None) if item.data else None
+    return list(shapes.key_blocks[1:]) if shapes else []
 
 
 def clips(path: Path, rest: Rest) -> dict[str, list[dict[str, Any]]]:
     """The poses of every clip that the report beside the opened file names."""
     questions = played.asked(path)
     numbers = vertex_numbers(path, questions)
+    for key in [key for item in bpy.context.scene.objects for key in keys(item)]:
+        # The import leaves values between 0 and 1 alone, and Blender keeps weights within the range of their sliders.
+        key.slider_min, key.slider_max = -10.0, 10.0
     found = {}
     for name, clip in questions.items():
         rest.restore()
@@ -62,7 +75,7 @@ def clips(path: Path, rest: Rest) -> dict[str, list[dict[str, Any]]]:
 
 def start(name: str) -> None:
     """Let every object play its part of a clip and nothing else."""
-    for item in bpy.data.objects:
+    for item in [*bpy.data.objects, *bpy.data.shape_keys]:
         data = item.animation_data
         if data is None:
             continue
@@ -133,6 +146,10 @@ def vertex_numbers(path: Path, questions: dict[str, Any]) -> dict[str, list[int]
         if mesh.name not in told or mesh.name not in bpy.data.meshes:
             continue
         vertices = bpy.data.meshes[mesh.name].vertices
+        # Where states part vertices that stand at one place, numbers are those of the file, if nothing was left out.
+        if mesh.targets and len(vertices) == len(mesh.positions):
+            numbers[mesh.name] = told[mesh.name]
+            continue
         tree = KDTree(len(vertices))
         for vertex in vertices:
             tree.insert(vertex.co, vertex.index)

@@ -153,8 +153,13 @@ def expected(profile: str, totals: Facts) -> Facts:
 
 
 def with_lines(claims: Facts) -> Facts:
-    """The claims, those about lines beside the others."""
-    return {**claims, **{f"lines.{fact}": value for fact, value in (claims.get("lines") or {}).items()}}
+    """The claims, those about lines and about states beside the others."""
+    states = {
+        f"morphs.{name}.{fact}": value
+        for name, state in claims.get("morphs", {}).items()
+        for fact, value in state.items()
+    }
+    return {**claims, **{f"lines.{fact}": value for fact, value in (claims.get("lines") or {}).items()}, **states}
 
 
 def with_counted(claimed: dict[str, Facts], measured: list[Measured]) -> dict[str, Facts]:
@@ -248,13 +253,15 @@ def facts(asset: str, at: tuple[str, str], claims: Facts, tool: str, measured: F
     place, profile = at
     scale = Scale.of(claims)
     for fact, found in measured.items():
-        if fact in DEMANDS:
+        if fact.rpartition(".")[2] in DEMANDS:
             yield demand(asset, (f"{place}.{fact}", profile), tool, found, measured)
         elif fact == "self-intersections":
             yield from intersections(asset, place, claims, tool, found)
         elif (claim := claim_for(fact, claims)) is not None:
             name, claimed = claim
             allowed = scale.allowed(fact.removeprefix("proper-"), tool)
+            if fact.startswith("morphs.") and fact.endswith((".bounds", ".furthest")):
+                allowed = scale.allowed("bounds", tool)
             yield Finding(asset, f"{place}.{name}", tool, claimed, found, differs(claimed, found), allowed)
 
 
@@ -274,7 +281,7 @@ def claim_for(fact: str, claims: Facts) -> tuple[str, Any] | None:
         return (rest, claims.get(rest)) if claims.get("inertia-of") == kind else None
     if kind in ("closed", "manifold") and rest:
         return (rest, claims.get(rest)) if claims.get(kind) else None
-    known = fact in COUNTS or fact in MEASURES
+    known = fact in COUNTS or fact in MEASURES or (kind.startswith("morphs.") and fact in claims)
     return (fact, claims[fact]) if known and fact in claims else None
 
 

@@ -60,11 +60,21 @@ class Cloud:
 
 
 @dataclass(frozen=True)
+class Target:
+    """A morph target: its name, its weight where nothing moves it, and differences by glTF name."""
+
+    name: str
+    weight: float
+    attributes: dict[str, NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
 class Mesh:
     """One glTF mesh and what follows from merging vertices at equal written positions."""
 
     name: str
     primitives: list[Primitive]
+    targets: list[Target]
 
     @property
     def surfaces(self) -> list[Primitive]:
@@ -123,15 +133,23 @@ class Document:
     def accessor(self, index: int) -> NDArray[Any]:
         """The numbers of one accessor, shape (count, width); rows may be interleaved."""
         accessor = self.json["accessors"][index]
-        if "sparse" in accessor:
-            message = f"accessor {index} is sparse"
-            raise ValueError(message)
         kind = np.dtype(COMPONENTS[accessor["componentType"]])
         width, count = WIDTHS[accessor["type"]], accessor["count"]
-        if "bufferView" not in accessor:
-            return np.zeros((count, width), kind)
-        view = self.json["bufferViews"][accessor["bufferView"]]
-        start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+        found = (
+            self._rows(accessor, kind, (count, width)) if "bufferView" in accessor else np.zeros((count, width), kind)
+        )
+        if sparse := accessor.get("sparse"):
+            found = found.copy()
+            places = np.dtype(COMPONENTS[sparse["indices"]["componentType"]])
+            rows = self._rows(sparse["indices"], places, (sparse["count"], 1)).ravel()
+            found[rows] = self._rows(sparse["values"], kind, (sparse["count"], width))
+        return found
+
+    def _rows(self, where: dict[str, Any], kind: np.dtype[Any], shape: tuple[int, int]) -> NDArray[Any]:
+        """Elements of a view from an offset on."""
+        count, width = shape
+        view = self.json["bufferViews"][where["bufferView"]]
+        start = view.get("byteOffset", 0) + where.get("byteOffset", 0)
         stride = view.get("byteStride", width * kind.itemsize)
         return np.ndarray(
             (count, width),
@@ -145,9 +163,17 @@ class Document:
     def meshes(self) -> list[Mesh]:
         """The meshes in file order; an unnamed one is `mesh 0`, `mesh 1`..."""
         return [
-            Mesh(mesh.get("name", f"mesh {i}"), [self._primitive(p) for p in mesh["primitives"]])
+            Mesh(mesh.get("name", f"mesh {i}"), [self._primitive(p) for p in mesh["primitives"]], self._targets(mesh))
             for i, mesh in enumerate(self.json.get("meshes", []))
         ]
+
+    def _targets(self, mesh: dict[str, Any]) -> list[Target]:
+        """The morph targets, which all primitives of a mesh of ours share."""
+        written = mesh["primitives"][0].get("targets", [])
+        names = mesh.get("extras", {}).get("targetNames", [str(i) for i in range(len(written))])
+        weights = mesh.get("weights", [0.0] * len(written))
+        found = [{name: self.accessor(i).astype(float) for name, i in target.items()} for target in written]
+        return [Target(*one) for one in zip(names, weights, found, strict=True)]
 
     def _primitive(self, primitive: dict[str, Any]) -> Primitive:
         mode = primitive.get("mode", TRIANGLES)

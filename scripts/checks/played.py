@@ -63,13 +63,18 @@ class Stage:
         """The scene at a time."""
         time = question["time"]
         locals_ = [dict(node) for node in self.nodes]
+        weights = {index: self.rest_weights(node) for index, node in enumerate(self.nodes)}
         for channel in animation["channels"]:
             sampler = animation["samplers"][channel["sampler"]]
             value = self.sample(sampler, channel["target"]["path"], time)
+            if channel["target"]["path"] == "weights":
+                weights[channel["target"]["node"]] = value
+                continue
             locals_[channel["target"]["node"]][channel["target"]["path"]] = value.tolist()
         worlds = [self.world(index, locals_) for index in range(len(self.nodes))]
         vertices = {
-            name: self.skinned(name, [v["vertex"] for v in told], worlds) for name, told in question["vertices"].items()
+            name: self.moved(name, [v["vertex"] for v in told], (worlds, weights))
+            for name, told in question["vertices"].items()
         }
         nodes = {name: worlds[self.names[name]].T.ravel().tolist() for name in question["nodes"] if name in self.names}
         return {"time": time, "nodes": nodes, "vertices": vertices}
@@ -96,6 +101,8 @@ class Stage:
         """A sampler's value: appendix C of the specification."""
         times = self.document.accessor(sampler["input"]).astype(float).ravel()
         values = self.document.accessor(sampler["output"]).astype(float)
+        if path == "weights":
+            values = values.reshape(len(times), -1)
         key = int(np.searchsorted(times, time, side="right")) - 1
         if key < 0:
             return values[0]
@@ -115,18 +122,34 @@ class Stage:
             ) / np.sin(angle)
         return mixed / np.linalg.norm(mixed)
 
-    def skinned(self, mesh: str, vertices: list[int], worlds: list[NDArray[np.float64]]) -> list[list[float]]:
-        """Where vertices of a skinned mesh are."""
+    def rest_weights(self, node: dict[str, Any]) -> NDArray[np.float64]:
+        """The weights of what a node shows where nothing moves them."""
+        targets = self.document.meshes[node["mesh"]].targets if "mesh" in node else []
+        return np.array([target.weight for target in targets])
+
+    def moved(
+        self,
+        mesh: str,
+        vertices: list[int],
+        scene: tuple[list[NDArray[np.float64]], dict[int, NDArray[np.float64]]],
+    ) -> list[list[float]]:
+        """Where vertices of a mesh are that joints carry or weights move, at the first node that shows it."""
+        worlds, weights = scene
         index = next(i for i, one in enumerate(self.document.json["meshes"]) if one.get("name") == mesh)
-        node = next(one for one in self.nodes if one.get("mesh") == index and "skin" in one)
+        shows = next(i for i, one in enumerate(self.nodes) if one.get("mesh") == index)
+        node = self.nodes[shows]
+        attributes = self.document.meshes[index].surfaces[0].attributes
+        places = attributes["POSITION"][vertices].astype(float)
+        for target, weight in zip(self.document.meshes[index].targets, weights[shows], strict=True):
+            places = places + weight * target.attributes["POSITION"][vertices]
+        points = np.concatenate([places, np.ones((len(vertices), 1))], axis=1)
+        if "skin" not in node:
+            return (points @ worlds[shows].T)[:, :3].tolist()
         skin = self.document.json["skins"][node["skin"]]
         binds = self.document.accessor(skin["inverseBindMatrices"]).astype(float).reshape(-1, 4, 4).transpose(0, 2, 1)
         maps = np.array([worlds[joint] @ bind for joint, bind in zip(skin["joints"], binds, strict=True)])
-        attributes = self.document.meshes[index].surfaces[0].attributes
-        places = attributes["POSITION"][vertices].astype(float)
         joints = attributes["JOINTS_0"][vertices].astype(int)
         weights = attributes["WEIGHTS_0"][vertices].astype(float) / 255.0
-        points = np.concatenate([places, np.ones((len(vertices), 1))], axis=1)
         return np.einsum("vi,vijk,vk->vj", weights, maps[joints], points)[:, :3].tolist()
 
 

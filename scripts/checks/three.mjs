@@ -1,5 +1,5 @@
 // What three.js finds when it loads the file and plays its clips: world matrices at rest, and at the times that the
-// report names, poses of joints and moving nodes and places of skinned vertices.
+// report names, poses of joints and moving nodes and places of vertices that joints carry or weights move.
 // node checks/three.mjs OUT.json FILE...
 import fs from 'node:fs';
 import * as THREE from 'three';
@@ -43,11 +43,13 @@ function byName(gltf, document) {
   return objects;
 }
 
-function skinnedByMesh(gltf, document) {
+// The first object of each mesh that joints carry or weights move.
+function movedByMesh(gltf, document) {
   const meshes = new Map();
   gltf.scene.traverse((object) => {
     const index = gltf.parser.associations.get(object)?.meshes;
-    if (object.isSkinnedMesh && index !== undefined && !meshes.has(document.meshes[index].name))
+    const moves = object.isSkinnedMesh || object.morphTargetInfluences !== undefined;
+    if (moves && index !== undefined && !meshes.has(document.meshes[index].name))
       meshes.set(document.meshes[index].name, object);
   });
   return meshes;
@@ -61,7 +63,7 @@ function pose(asked, gltf, objects, meshes) {
   const place = new THREE.Vector3();
   for (const [name, list] of Object.entries(asked.vertices)) {
     const mesh = meshes.get(name);
-    mesh?.skeleton.update();
+    mesh?.skeleton?.update();
     vertices[name] = list.map(({ vertex }) => {
       if (mesh === undefined) return null;
       mesh.getVertexPosition(vertex, place);
@@ -102,7 +104,7 @@ async function measure(file) {
     for (const [name, object] of objects) measured.nodes[name] = object.matrixWorld.toArray();
     const report = file.replace(/\.glb$/, '.report.json');
     const clips = fs.existsSync(report) ? (JSON.parse(fs.readFileSync(report, 'utf8')).clips ?? {}) : {};
-    measured.clips = play(gltf, clips, objects, skinnedByMesh(gltf, document));
+    measured.clips = play(gltf, clips, objects, movedByMesh(gltf, document));
   } catch (error) {
     measured.error = String(error);
   }

@@ -39,21 +39,32 @@ function views(document, binary) {
 
 // The numbers of an accessor as they stand, and as the specification divides them.
 function numbers(document, plain, accessor) {
-  const Kind = ARRAYS[accessor.componentType];
   const width = WIDTHS[accessor.type];
-  const view = document.bufferViews[accessor.bufferView];
-  const stride = view.byteStride ?? width * Kind.BYTES_PER_ELEMENT;
-  const bytes = plain[accessor.bufferView];
-  const found = new Float64Array(accessor.count * width);
-  const data = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  const get = `get${Kind.name.replace('Array', '')}`;
-  for (let row = 0; row < accessor.count; row += 1)
-    for (let column = 0; column < width; column += 1) {
-      const at = (accessor.byteOffset ?? 0) + row * stride + column * Kind.BYTES_PER_ELEMENT;
-      const number = data[get](at, true);
-      found[row * width + column] = accessor.normalized ? Math.max(number / MOST[accessor.componentType], -1) : number;
-    }
-  return found;
+  const divided = (number) => (accessor.normalized ? Math.max(number / MOST[accessor.componentType], -1) : number);
+  const rows = (where, componentType, count, columns) => {
+    const Kind = ARRAYS[componentType];
+    const stride = document.bufferViews[where.bufferView].byteStride ?? columns * Kind.BYTES_PER_ELEMENT;
+    const bytes = plain[where.bufferView];
+    const data = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    const get = `get${Kind.name.replace('Array', '')}`;
+    const found = new Float64Array(count * columns);
+    for (let row = 0; row < count; row += 1)
+      for (let column = 0; column < columns; column += 1)
+        found[row * columns + column] = data[get]((where.byteOffset ?? 0) + row * stride + column * Kind.BYTES_PER_ELEMENT, true);
+    return found;
+  };
+  const found =
+    accessor.bufferView === undefined
+      ? new Float64Array(accessor.count * width)
+      : rows(accessor, accessor.componentType, accessor.count, width);
+  if (accessor.sparse !== undefined) {
+    const { count, indices, values } = accessor.sparse;
+    const changed = rows(values, accessor.componentType, count, width);
+    rows(indices, indices.componentType, count, 1).forEach((place, at) => {
+      for (let column = 0; column < width; column += 1) found[place * width + column] = changed[at * width + column];
+    });
+  }
+  return found.map(divided);
 }
 
 function unpack(bytes) {
@@ -70,13 +81,16 @@ function unpack(bytes) {
     if (!floats.has(index)) floats.set(index, map(numbers(document, plain, document.accessors[index])));
   };
   for (const mesh of document.meshes ?? [])
-    for (const primitive of mesh.primitives)
+    for (const primitive of mesh.primitives) {
+      for (const [name, index] of (primitive.targets ?? []).flatMap(Object.entries))
+        asFloats(index, (all) => (name === 'POSITION' && grid !== undefined ? all.map((number) => Math.fround(number * grid.step)) : all));
       for (const [name, index] of Object.entries(primitive.attributes)) {
         const { componentType } = document.accessors[index];
         if (name === 'POSITION' && componentType === 5123)
           asFloats(index, (all) => all.map((number, at) => Math.fround(number * grid.step + grid.offset[at % 3])));
         else if (/^(NORMAL|TANGENT|TEXCOORD_)/.test(name) && componentType !== 5126) asFloats(index, (all) => all);
       }
+    }
   const quantized = document.extensionsRequired?.includes('KHR_mesh_quantization') && grid !== undefined;
   for (const skin of quantized ? (document.skins ?? []) : [])
     asFloats(skin.inverseBindMatrices, (all) => fromMetres(all, grid));
@@ -87,9 +101,10 @@ function unpack(bytes) {
     const accessor = document.accessors[index];
     const width = WIDTHS[accessor.type];
     out.push(Buffer.from(Float32Array.from(all).buffer));
-    document.bufferViews.push({ buffer: 0, byteLength: 0, target: document.bufferViews[accessor.bufferView].target });
+    document.bufferViews.push({ buffer: 0, byteLength: 0, target: document.bufferViews[accessor.bufferView]?.target });
     Object.assign(accessor, { bufferView: out.length - 1, byteOffset: 0, componentType: 5126 });
     delete accessor.normalized;
+    delete accessor.sparse;
     for (const [bound, pick] of Object.entries({ min: Math.min, max: Math.max }))
       if (accessor[bound] !== undefined)
         accessor[bound] = accessor[bound].map((_, axis) =>
@@ -143,7 +158,10 @@ function drop(document, carriers) {
   const first = document.nodes.length - carriers.length;
   for (const { node, index } of carriers) {
     if (index < first) throw new Error(`node ${index} carries a mesh and does not stand after all others`);
-    const above = document.nodes.find((other) => other.children?.includes(index));
+    const shows = document.nodes.findIndex((other) => other.children?.includes(index));
+    const above = document.nodes[shows];
+    for (const { target } of (document.animations ?? []).flatMap((animation) => animation.channels))
+      if (target.node === index) target.node = shows;
     above.mesh = node.mesh;
     above.children = above.children.filter((child) => child !== index);
     if (above.children.length === 0) delete above.children;

@@ -17,7 +17,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from checks import finding, played
-from checks.document import Cloud, Document, Mesh, Primitive
+from checks.document import Cloud, Document, Mesh, Primitive, Target
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -106,6 +106,8 @@ def shape(mesh: Mesh) -> dict[str, Any]:
     }
     facts["acmr"], facts["atvr"] = cache_figures(mesh)
     facts.update(line_facts(mesh.lines))
+    for target in mesh.targets:
+        facts.update(morph_facts(mesh, target))
     return facts
 
 
@@ -126,6 +128,20 @@ def line_facts(lines: Cloud) -> dict[str, Any]:
         "lines.length": float(np.linalg.norm(steps, axis=1).sum()),
         "lines.bounds": box(lines.positions),
     }
+
+
+def morph_facts(mesh: Mesh, target: Target) -> dict[str, Any]:
+    """The facts of one morph target."""
+    moved = target.attributes["POSITION"]
+    normals = mesh.surfaces[0].attributes["NORMAL"] + target.attributes["NORMAL"]
+    facts = {
+        "weight": target.weight,
+        "moved": int(moved.any(axis=1).sum()),
+        "furthest": float(np.linalg.norm(moved, axis=1).max()),
+        "bounds": box(mesh.positions + moved),
+        "largest-normal-error": float(np.abs(np.linalg.norm(normals, axis=1) - 1).max()),
+    }
+    return {f"morphs.{target.name}.{fact}": value for fact, value in facts.items()}
 
 
 def box(points: NDArray[np.float64]) -> dict[str, list[float]]:

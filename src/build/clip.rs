@@ -63,7 +63,7 @@ impl Builder<'_> {
             self.report(report);
             return None;
         }
-        good &= self.check_events(written, duration);
+        good &= self.check_weights(&tracks) && self.check_events(written, duration);
         if !good {
             return None;
         }
@@ -167,6 +167,10 @@ impl Builder<'_> {
     }
 
     fn targets(&mut self, clip: &spec::Clip, track: &spec::ClipTrack) -> Option<Targets> {
+        if let Some(morph) = &track.morph {
+            let targets = self.weight_targets(morph, track)?;
+            return Some(targets.into_iter().map(|target| (target, 0.0)).collect());
+        }
         if let Some(node) = &track.node {
             let index = self.spec.nodes.get_index_of(&node.value.0)?;
             return Some(vec![(Target::Node(index), 0.0)]);
@@ -230,9 +234,33 @@ impl Builder<'_> {
         false
     }
 
+    /// The weights of a node are written together, and together they jump from key to key or run.
+    fn check_weights(&mut self, tracks: &[(ClipTrack, Span)]) -> bool {
+        let of = |track: &ClipTrack| match track.target {
+            Target::Weight { node, .. } => Some((node, track.course.stepped())),
+            _ => None,
+        };
+        let mixed = tracks.iter().enumerate().find_map(|(index, (track, span))| {
+            let (node, stepped) = of(track)?;
+            let other = tracks[..index].iter().find(|(other, _)| of(other) == Some((node, !stepped)))?;
+            Some((track.target, *span, other.1))
+        });
+        let Some((target, span, other)) = mixed else { return true };
+        let message = format!("some weights of `{}` step and others run", self.target_name(target));
+        let report = Diagnostic::error(Code::MixedWeights, message)
+            .at(span, "this one goes another way")
+            .also(other, "than this")
+            .note("glTF keeps the weights of a mesh in one track")
+            .help("write `between = \"step\"` for all of them, or two keys close together for a jump");
+        self.report(report);
+        false
+    }
+
     fn target_name(&self, target: Target) -> String {
         match target {
-            Target::Node(node) => self.model.nodes.get(node).map_or(String::new(), |node| node.name.clone()),
+            Target::Node(node) | Target::Weight { node, .. } => {
+                self.model.nodes.get(node).map_or(String::new(), |node| node.name.clone())
+            }
             Target::Joint { .. } => self.joint(target).map_or(String::new(), |joint| joint.bone.name.clone()),
         }
     }
@@ -281,7 +309,7 @@ impl Builder<'_> {
                 }
                 Path::Translation => slid_too_far(joint, &times, value, self.model.frame.unit)
                     .map(|report| report.at(*span, "this track")),
-                Path::Scale => None,
+                Path::Scale | Path::Weight => None,
             });
         }
         let good = reports.is_empty();
@@ -317,6 +345,7 @@ fn word(path: Path) -> &'static str {
         Path::Translation => "translation",
         Path::Rotation => "rotation",
         Path::Scale => "scale",
+        Path::Weight => "weight",
     }
 }
 

@@ -36,6 +36,15 @@ impl Builder<'_> {
         if let Some(along) = &track.along {
             return self.along_courses(track, along, moved);
         }
+        if track.morph.is_some() {
+            let (law, count, span) = self.law_of(track, moved)?;
+            if count == 1 {
+                return Some(vec![Course::Weight(law)]);
+            }
+            let message = format!("a weight is one number, found {count}");
+            self.report(Diagnostic::error(Code::KeyValue, message).at(span, format!("{count} numbers")));
+            return None;
+        }
         let path = track.path.as_ref()?.value;
         let (law, count, span) = self.law_of(track, moved)?;
         let axis = track.axis.as_ref().map(|axis| axis.value.0);

@@ -27,6 +27,7 @@ mod joined;
 mod loft;
 mod map;
 mod material;
+mod morph;
 mod motion_file;
 mod moving;
 mod node;
@@ -67,7 +68,7 @@ use crate::geometry::field::AnyField;
 use crate::geometry::map::GridField;
 use crate::language::diagnostic::{Diagnostic, Severity};
 use crate::language::source::{Files, Span};
-use crate::language::spec::{Spec, Up};
+use crate::language::spec::{ParameterValue, Sp, Spec, Up};
 use crate::model::{Frame, ImageHandle, Limits, MaterialHandle, Model, ShapeHandle};
 
 /// A model, and where its parts are written.
@@ -83,22 +84,49 @@ pub struct Built {
     pub skin_places: Vec<Span>,
     /// Where each clip is defined, by its index.
     pub clip_places: Vec<Span>,
+    /// Where each state of a shape is defined, by its index.
+    pub morph_places: Vec<Span>,
+    /// The shapes by their names in the document.
+    pub shapes: IndexMap<String, ShapeHandle>,
     /// What a person should know though nothing is wrong.
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Builds the model of a document; `name` is the asset's unless the document states one.
+/// What a document makes with other values of some parameters.
+#[derive(Clone, Debug)]
+pub struct StateModel {
+    /// The values.
+    pub with: IndexMap<String, Sp<ParameterValue>>,
+    /// What they make.
+    pub built: Built,
+}
+
+/// Builds the model of a document; `name` is the asset's unless the document states one. `states` are those that its
+/// morphs ask for.
 ///
 /// # Errors
 /// All faults of the document's geometry and of the files it names.
-pub fn model(spec: &Spec, name: &str, files: &dyn Files) -> Result<Built, Vec<Diagnostic>> {
+pub fn model(
+    spec: &Spec,
+    name: &str,
+    files: &dyn Files,
+    states: Vec<StateModel>,
+) -> Result<Built, Vec<Diagnostic>> {
     let mut builder = Builder::new(spec, name, files);
-    builder.build();
-    let Builder { model, places, faces, skin_places, clip_places, reports, .. } = builder;
-    if reports.iter().any(|report| report.severity == Severity::Error) {
-        return Err(reports);
-    }
-    Ok(Built { model, places, faces, skin_places, clip_places, warnings: reports })
+    builder.build_shapes();
+    builder.build_motion(&states);
+    builder.model.states = states.into_iter().map(|state| state.built.model).collect();
+    builder.finish()
+}
+
+/// Builds what a document makes as a state: its shapes, without what shows and moves them.
+///
+/// # Errors
+/// As those of [`model`].
+pub fn state(spec: &Spec, name: &str, files: &dyn Files) -> Result<Built, Vec<Diagnostic>> {
+    let mut builder = Builder::new(spec, name, files);
+    builder.build_shapes();
+    builder.finish()
 }
 
 /// Builds one curve of a document, with all its parts; none when there is no such curve.
@@ -124,6 +152,8 @@ struct Builder<'a> {
     skin_places: Vec<Span>,
     /// Where each clip is defined.
     clip_places: Vec<Span>,
+    /// Where each state of a shape is defined.
+    morph_places: Vec<Span>,
     reports: Vec<Diagnostic>,
     shapes: IndexMap<String, Option<ShapeHandle>>,
     materials: IndexMap<String, Option<MaterialHandle>>,
@@ -150,6 +180,8 @@ impl<'a> Builder<'a> {
             skeletons: Vec::new(),
             skins: Vec::new(),
             clips: Vec::new(),
+            morphs: Vec::new(),
+            states: Vec::new(),
             motion_tolerance: spec.motion_tolerance.map(|tolerance| tolerance.value * spec.unit.metres()),
             paths: Vec::new(),
             limits: Limits {
@@ -167,6 +199,7 @@ impl<'a> Builder<'a> {
             face_places: Vec::new(),
             skin_places: Vec::new(),
             clip_places: Vec::new(),
+            morph_places: Vec::new(),
             reports: Vec::new(),
             shapes: IndexMap::new(),
             materials: IndexMap::new(),
@@ -178,7 +211,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn build(&mut self) {
+    fn build_shapes(&mut self) {
         let spec = self.spec;
         // Every definition is built, used or not, so that no fault hides.
         for name in spec.materials.keys() {
@@ -196,10 +229,24 @@ impl<'a> Builder<'a> {
         for name in spec.shapes.keys() {
             self.named_shape(name);
         }
+    }
+
+    fn build_motion(&mut self, states: &[StateModel]) {
         self.skeletons();
         self.nodes();
         self.skins();
+        self.morphs(states);
         self.clips();
+    }
+
+    fn finish(self) -> Result<Built, Vec<Diagnostic>> {
+        let Self { model, places, faces, skin_places, clip_places, morph_places, reports, shapes, .. } = self;
+        if reports.iter().any(|report| report.severity == Severity::Error) {
+            return Err(reports);
+        }
+        let shapes = shapes.into_iter().filter_map(|(name, handle)| Some((name, handle?))).collect();
+        let warnings = reports;
+        Ok(Built { model, places, faces, skin_places, clip_places, morph_places, shapes, warnings })
     }
 
     fn report(&mut self, diagnostic: Diagnostic) {

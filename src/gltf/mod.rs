@@ -8,14 +8,17 @@
 mod buffer;
 mod lines;
 mod material;
+mod morph;
 mod motion;
 mod position;
 mod profile;
 mod read;
+mod read_morph;
 mod read_motion;
 mod write;
 
 pub use profile::Profile;
 pub use read::{Geometry, Indices, Lines, Part, PositionBytes, Read, ReadError, read};
+pub use read_morph::ReadTarget;
 pub use read_motion::{ReadAnimation, ReadChannel, ReadInfluences, ReadSkin};
-pub use write::{WriteError, Written, WrittenAnimation, WrittenGeometry, write};
+pub use write::{WriteError, Written, WrittenAnimation, WrittenGeometry, WrittenTarget, write};

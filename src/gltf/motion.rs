@@ -9,7 +9,7 @@ use gltf::json::{Accessor, Animation, Index, Root, Skin, Value};
 use serde_json::json;
 
 use super::buffer::{Binary, Content, Elements, accessor};
-use super::write::put;
+use super::write::{Carriers, put};
 use crate::geometry::mesh;
 use crate::geometry::number::single;
 use crate::motion::Path;
@@ -74,7 +74,7 @@ pub(super) fn skins(root: &mut Root, binary: &mut Binary, scene: &Scene) {
 }
 
 /// Writes all animations.
-pub(super) fn animations(root: &mut Root, binary: &mut Binary, scene: &Scene) {
+pub(super) fn animations(root: &mut Root, binary: &mut Binary, scene: &Scene, carriers: &Carriers) {
     for animation in &scene.animations {
         let mut inputs: Vec<(&[f64], Index<Accessor>)> = Vec::new();
         let mut samplers = Vec::new();
@@ -101,7 +101,7 @@ pub(super) fn animations(root: &mut Root, binary: &mut Binary, scene: &Scene) {
                 }),
                 output: values(root, binary, channel),
             });
-            channels.push(target(channel, sampler));
+            channels.push(target(channel, sampler, carriers));
         }
         root.push(Animation {
             extensions: None,
@@ -113,17 +113,21 @@ pub(super) fn animations(root: &mut Root, binary: &mut Binary, scene: &Scene) {
     }
 }
 
-fn target(channel: &scene::Channel, sampler: Index<Sampler>) -> Channel {
+fn target(channel: &scene::Channel, sampler: Index<Sampler>, carriers: &Carriers) -> Channel {
+    // Weights move the mesh, which may hang on a node of its own.
+    let carrier = carriers.iter().find(|(shown, _)| channel.path == Path::Weight && *shown == channel.node);
+    let own = Index::new(mesh::index(channel.node));
     Channel {
         sampler,
         target: Target {
             extensions: None,
             extras: None,
-            node: Index::new(mesh::index(channel.node)),
+            node: carrier.map_or(own, |(_, carrier)| *carrier),
             path: Valid::Valid(match channel.path {
                 Path::Translation => Property::Translation,
                 Path::Rotation => Property::Rotation,
                 Path::Scale => Property::Scale,
+                Path::Weight => Property::MorphTargetWeights,
             }),
         },
         extensions: None,
@@ -145,18 +149,15 @@ fn times(root: &mut Root, binary: &mut Binary, times: &[f64]) -> Index<Accessor>
 
 fn values(root: &mut Root, binary: &mut Binary, channel: &scene::Channel) -> Index<Accessor> {
     let start = binary.start();
-    let wide = channel.path == Path::Rotation;
-    for value in &channel.values {
-        let value = value.as_vec4();
-        if wide {
-            put(&mut binary.bytes, value.to_array());
-        } else {
-            put(&mut binary.bytes, value.truncate().to_array());
-        }
-    }
-    let view = binary.view(root, start, None, Content::Attributes { stride: if wide { 16 } else { 12 } });
-    let shape = if wide { Type::Vec4 } else { Type::Vec3 };
-    let elements = Elements { component: ComponentType::F32, shape, count: channel.values.len() };
+    channel.values.iter().for_each(|value| put(&mut binary.bytes, [single(*value)]));
+    let (shape, width) = match channel.path {
+        Path::Translation | Path::Scale => (Type::Vec3, 3),
+        Path::Rotation => (Type::Vec4, 4),
+        Path::Weight => (Type::Scalar, 1),
+    };
+    let view = binary.view(root, start, None, Content::Attributes { stride: 4 * width });
+    let count = channel.values.len() / width;
+    let elements = Elements { component: ComponentType::F32, shape, count };
     root.push(accessor(view, 0, elements, None))
 }
 

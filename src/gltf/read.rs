@@ -28,6 +28,8 @@ pub struct Read<'a> {
     pub binary: &'a [u8],
     /// The grid of its positions, which are read in metres.
     pub grid: Option<Grid>,
+    /// Nodes that only took a mesh from the grid to metres, and are no nodes here, with those that show it.
+    pub(super) carriers: Vec<(usize, usize)>,
 }
 
 /// A position as it stands in a file: three little-endian floats.
@@ -157,10 +159,8 @@ pub fn read(bytes: &[u8]) -> Result<Read<'_>, ReadError> {
     let data = Data { root: &root, binary, grid };
     let geometries: Result<Vec<_>, _> = (0..root.meshes.len()).map(|mesh| geometry(data, mesh)).collect();
     let geometries = geometries?;
-    if let Some(grid) = grid {
-        drop_carriers(&mut root, grid);
-    }
-    Ok(Read { root, geometries, binary, grid })
+    let carriers = grid.map_or_else(Vec::new, |grid| drop_carriers(&mut root, grid));
+    Ok(Read { root, geometries, binary, grid, carriers })
 }
 
 #[derive(Clone, Copy)]
@@ -170,8 +170,10 @@ struct Data<'r, 'a> {
     grid: Option<Grid>,
 }
 
-/// Takes away the nodes that only take a mesh from the grid to metres: the last ones, each below the one that shows it.
-fn drop_carriers(root: &mut Root, grid: Grid) {
+/// Takes away the nodes that only take a mesh from the grid to metres: the last ones, each below the one that shows it;
+/// tells which they were.
+fn drop_carriers(root: &mut Root, grid: Grid) -> Vec<(usize, usize)> {
+    let mut dropped = Vec::new();
     let (step, offset) = (single(grid.step), grid.offset.as_vec3().to_array());
     let carries = |node: &gltf::json::Node| {
         let plain = node.name.is_none() && node.children.is_none() && node.rotation.is_none();
@@ -182,15 +184,17 @@ fn drop_carriers(root: &mut Root, grid: Grid) {
     {
         let above =
             |node: &gltf::json::Node| node.children.iter().flatten().any(|child| child.value() == last);
-        let Some(shows) = root.nodes.iter_mut().find(|node| above(node) && node.mesh.is_none()) else {
-            return;
-        };
+        let found = root.nodes.iter().position(|node| above(node) && node.mesh.is_none());
+        let Some(found) = found else { break };
+        let shows = &mut root.nodes[found];
+        dropped.push((last, found));
         shows.mesh = Some(mesh);
         let left: Vec<_> =
             shows.children.take().into_iter().flatten().filter(|child| child.value() != last).collect();
         shows.children = (!left.is_empty()).then_some(left);
         root.nodes.pop();
     }
+    dropped
 }
 
 /// Where the elements of an accessor stand.
@@ -406,6 +410,19 @@ pub(super) fn elements(
     let view = accessor.buffer_view.filter(|_| accessor.sparse.is_none());
     let view =
         view.ok_or_else(|| ReadError::Unsupported(format!("accessor {at}, sparse or without data,")))?;
+    let count = usize::try_from(accessor.count.0).map_err(|_| ReadError::Range(at))?;
+    let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
+    elements_of(root, binary, (view, offset), (count, width), at)
+}
+
+/// So many elements of a view from an offset on, for accessor `at`.
+pub(super) fn elements_of(
+    root: &Root,
+    binary: &[u8],
+    (view, offset): (Index<gltf::json::buffer::View>, u64),
+    (count, width): (usize, usize),
+    at: usize,
+) -> Result<Elements, ReadError> {
     let view = root
         .buffer_views
         .get(view.value())
@@ -413,15 +430,14 @@ pub(super) fn elements(
     if view.buffer.value() != 0 || root.buffers.first().is_none_or(|buffer| buffer.uri.is_some()) {
         return Err(ReadError::Unsupported("data outside the file".to_owned()));
     }
-    let number = |value: Option<gltf::json::validation::USize64>| value.map_or(0, |value| value.0);
-    let start = number(view.byte_offset).saturating_add(number(accessor.byte_offset));
+    let view_start = view.byte_offset.map_or(0, |offset| offset.0);
+    let start = view_start.saturating_add(offset);
     let stride = view.byte_stride.map_or(width, |stride| stride.0);
-    let count = usize::try_from(accessor.count.0).map_err(|_| ReadError::Range(at))?;
     let reach = match count {
         0 => 0,
         _ => ((count - 1) as u64).saturating_mul(stride as u64).saturating_add(width as u64),
     };
-    let view_end = number(view.byte_offset).saturating_add(view.byte_length.0);
+    let view_end = view_start.saturating_add(view.byte_length.0);
     let end = start.saturating_add(reach);
     if stride < width {
         return Err(ReadError::Unsupported(format!("accessor {at}, whose elements overlap,")));

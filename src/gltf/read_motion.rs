@@ -2,7 +2,7 @@
 //!
 //! Reads what our own writer writes: joints and weights of one byte, float matrices, keys that step or run straight.
 
-use glam::{DMat4, DVec4, Mat4, Vec4};
+use glam::{DMat4, Mat4};
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::animation::{Interpolation, Property};
 use gltf::json::mesh::Semantic;
@@ -42,8 +42,9 @@ pub struct ReadChannel {
     pub stepped: bool,
     /// Seconds.
     pub times: Vec<f64>,
-    /// Values.
-    pub values: Vec<DVec4>,
+    /// For each time as many numbers: translations and scales x, y and z, rotations x, y, z and w, weights one for each
+    /// morph target.
+    pub values: Vec<f64>,
 }
 
 impl Read<'_> {
@@ -105,6 +106,7 @@ impl Read<'_> {
                 Checked::Valid(Property::Translation) => Path::Translation,
                 Checked::Valid(Property::Rotation) => Path::Rotation,
                 Checked::Valid(Property::Scale) => Path::Scale,
+                Checked::Valid(Property::MorphTargetWeights) => Path::Weight,
                 _ => return Err(unsupported("an animated property")),
             };
             let stepped = match sampler.interpolation {
@@ -113,18 +115,24 @@ impl Read<'_> {
                 _ => return Err(unsupported("a cubic sampler")),
             };
             let times = self.floats::<1>(sampler.input, Type::Scalar)?;
-            let values: Vec<DVec4> = if path == Path::Rotation {
-                let rows = self.floats::<4>(sampler.output, Type::Vec4)?;
-                rows.into_iter().map(|row| Vec4::from_array(row).as_dvec4()).collect()
-            } else {
-                let rows = self.floats::<3>(sampler.output, Type::Vec3)?;
-                rows.into_iter().map(|[x, y, z]| Vec4::new(x, y, z, 0.0).as_dvec4()).collect()
+            let wide = |rows: &[f32]| rows.iter().map(|part| f64::from(*part)).collect();
+            let values: Vec<f64> = match path {
+                Path::Rotation => wide(self.floats::<4>(sampler.output, Type::Vec4)?.as_flattened()),
+                Path::Weight => wide(self.floats::<1>(sampler.output, Type::Scalar)?.as_flattened()),
+                _ => wide(self.floats::<3>(sampler.output, Type::Vec3)?.as_flattened()),
             };
-            if values.len() != times.len() || times.is_empty() {
+            let width = match path {
+                Path::Rotation => 4,
+                Path::Weight => values.len() / times.len().max(1),
+                _ => 3,
+            };
+            if width == 0 || values.len() != times.len() * width || times.is_empty() {
                 return Err(ReadError::Missing("a value of an animation".to_owned()));
             }
+            let node = channel.target.node.value();
+            let shows = self.carriers.iter().find(|(carrier, _)| *carrier == node);
             Ok(ReadChannel {
-                node: channel.target.node.value(),
+                node: shows.map_or(node, |(_, shows)| *shows),
                 path,
                 stepped,
                 times: times.into_iter().map(|[time]| f64::from(time)).collect(),

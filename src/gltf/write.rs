@@ -13,7 +13,7 @@ use thiserror::Error;
 use super::buffer::{Binary, Content, Elements, at, index_accessors, index_width};
 use super::position::positions;
 use super::profile::Profile;
-use super::{lines, material, motion};
+use super::{lines, material, morph, motion};
 use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
 use crate::geometry::number::{floor_count, single, size};
@@ -56,10 +56,21 @@ pub struct WrittenGeometry {
     pub deviation: Deviation,
     /// Distance that was asked for, metres.
     pub tolerance: Option<f64>,
+    /// For each morph target what is known of it.
+    pub targets: Vec<WrittenTarget>,
     /// For each written vertex its place on the exact source; empty unless asked for.
     pub anchors: Vec<Anchor>,
     /// For each written vertex of lines its place on the exact curve; empty unless asked for.
     pub line_anchors: Vec<Anchor>,
+}
+
+/// What is known of a morph target beyond its bytes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WrittenTarget {
+    /// Distance from the exact state before rounding.
+    pub deviation: Deviation,
+    /// Distance that was asked for, metres.
+    pub tolerance: Option<f64>,
 }
 
 /// What keeps a scene from being one file.
@@ -103,8 +114,9 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
         writer.mesh(checked, mesh, triangles.as_ref(), lines);
     }
     motion::skins(&mut writer.root, &mut writer.binary, scene);
-    motion::animations(&mut writer.root, &mut writer.binary, scene);
-    writer.nodes(checked);
+    let carriers = writer.carriers(scene);
+    motion::animations(&mut writer.root, &mut writer.binary, scene, &carriers);
+    writer.nodes(checked, &carriers);
     let animated = |animation: &crate::scene::Animation| WrittenAnimation {
         name: animation.name.clone(),
         bound: animation.bound,
@@ -117,6 +129,11 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
         mesh: scene.meshes.iter().position(|mesh| mesh.geometry == index).unwrap_or(0),
         deviation: geometry.deviation,
         tolerance: geometry.tolerance,
+        targets: geometry
+            .targets
+            .iter()
+            .map(|target| WrittenTarget { deviation: target.deviation, tolerance: target.tolerance })
+            .collect(),
         line_anchors: if anchors {
             geometry.wire.points.iter().map(|p| p.anchor).collect()
         } else {
@@ -149,17 +166,25 @@ fn binary_size(checked: Checked<'_>) -> usize {
         let points = geometry.wire.points.len();
         let triangles = geometry.mesh.triangles.len() * 3 * index_width(vertices);
         let carried = if geometry.influences.is_some() { 8 } else { 0 };
-        vertices * (24 + tangent + uv + carried) + triangles + points * (12 + 2 * index_width(points)) + 128
+        let states = geometry.targets.len() * (vertices * (24 + tangent) + 512);
+        vertices * (24 + tangent + uv + carried)
+            + states
+            + triangles
+            + points * (12 + 2 * index_width(points))
+            + 128
     };
     let images: usize = scene.images.iter().map(|image| image.bytes.len() + 4).sum();
     // The header and the JSON chunk are put before: room for most, so that the bytes are not copied for it.
     let json = 4096
         + 1024 * (scene.geometries.len() + scene.meshes.len() + scene.materials.len() + scene.nodes.len());
-    let channel = |channel: &crate::scene::Channel| channel.times.len() * 20 + 256;
+    let channel = |channel: &crate::scene::Channel| (channel.times.len() + channel.values.len()) * 4 + 256;
     let channels = scene.animations.iter().flat_map(|animation| animation.channels.iter().map(channel));
     let bind: usize = scene.skins.iter().map(|skin| skin.joints.len() * 80).sum();
     scene.geometries.iter().map(geometry).sum::<usize>() + images + json + channels.sum::<usize>() + bind
 }
+
+/// Nodes that show a mesh, each with the node below it that holds the mesh.
+pub(super) type Carriers = Vec<(usize, Index<Node>)>;
 
 /// Accessors that all meshes of a geometry share.
 struct Shared {
@@ -168,6 +193,7 @@ struct Shared {
     tangent: Option<Index<Accessor>>,
     uv: Option<Index<Accessor>>,
     carried: Option<motion::Carried>,
+    targets: Vec<gltf::json::mesh::MorphTarget>,
     /// For each run its indices.
     indices: Vec<Index<Accessor>>,
 }
@@ -195,11 +221,12 @@ impl Writer {
         });
         let uv = geometry.uv.then(|| uvs(root, binary, mesh, self.small));
         let carried = motion::carried(root, binary, geometry);
+        let targets = morph::targets(root, binary, geometry, (self.grid, self.small));
         let ends = [0].into_iter().chain(mesh.runs.iter().map(|run| run.end));
         let counts = ends.zip(&mesh.runs).map(|(start, run)| (run.end - start) as usize * 3);
         let all = mesh.triangles.iter().flatten().map(|vertex| vertex.0);
         let indices = index_accessors(root, binary, all, (mesh.vertices.len(), false), counts);
-        Shared { position, normal, tangent, uv, carried, indices }
+        Shared { position, normal, tangent, uv, carried, targets, indices }
     }
 
     fn mesh(
@@ -210,7 +237,16 @@ impl Writer {
         lines: &[lines::Lines],
     ) {
         let scene = checked.scene();
-        let runs = &scene.geometries[mesh.geometry].mesh.runs;
+        let geometry = &scene.geometries[mesh.geometry];
+        let runs = &geometry.mesh.runs;
+        // A primitive without tangents has none in its targets.
+        let targets = |shared: &Shared, bumps: bool| {
+            let one = |target: &gltf::json::mesh::MorphTarget| gltf::json::mesh::MorphTarget {
+                tangents: target.tangents.filter(|_| bumps),
+                ..target.clone()
+            };
+            (!shared.targets.is_empty()).then(|| shared.targets.iter().map(one).collect())
+        };
         let primitive = |shared: &Shared, run: &mesh::Run, indices: &Index<Accessor>| {
             let material = mesh.materials[run.origin as usize];
             let worn = material.map(|index| &scene.materials[index]);
@@ -235,7 +271,7 @@ impl Writer {
                 indices: Some(*indices),
                 material: material.map(|index| Index::new(mesh::index(index))),
                 mode: Valid::Valid(Mode::Triangles),
-                targets: None,
+                targets: targets(shared, bumps),
             }
         };
         let triangles = shared.into_iter().flat_map(|shared| {
@@ -244,14 +280,14 @@ impl Writer {
         let primitives = triangles.chain(lines.iter().map(|lines| lines.primitive(mesh))).collect();
         self.root.push(Mesh {
             extensions: None,
-            extras: None,
+            extras: morph::names(geometry),
             name: Some(mesh.name.clone()),
             primitives,
-            weights: None,
+            weights: morph::weights(geometry),
         });
     }
 
-    fn nodes(&mut self, checked: Checked<'_>) {
+    fn nodes(&mut self, checked: Checked<'_>, carriers: &Carriers) {
         let scene = checked.scene();
         let children = |parent: Option<usize>| -> Vec<Index<Node>> {
             let of = |(index, node): (usize, &crate::scene::Node)| {
@@ -259,7 +295,6 @@ impl Writer {
             };
             scene.nodes.iter().enumerate().filter_map(of).collect()
         };
-        let carriers = self.carriers(scene);
         for (index, node) in scene.nodes.iter().enumerate() {
             let mut below = children(Some(index));
             below.extend(carriers.iter().find(|(shown, _)| *shown == index).map(|(_, carrier)| *carrier));
@@ -282,7 +317,7 @@ impl Writer {
                 weights: None,
             });
         }
-        self.push_carriers(scene, &carriers);
+        self.push_carriers(scene, carriers);
         let nodes = children(None);
         let scene =
             self.root.push(Scene { extensions: None, extras: None, name: Some(scene.name.clone()), nodes });
@@ -291,14 +326,14 @@ impl Writer {
 
     /// For each node whose mesh needs one, the node below it that takes the mesh from the grid to metres. They stand
     /// after all others, so that the others keep their places.
-    fn carriers(&self, scene: &crate::scene::Scene) -> Vec<(usize, Index<Node>)> {
+    fn carriers(&self, scene: &crate::scene::Scene) -> Carriers {
         let shown =
             scene.nodes.iter().enumerate().filter(|(_, node)| node.mesh.is_some() && node.skin.is_none());
         let own = shown.filter(|_| self.grid.is_some()).map(|(index, _)| index);
         own.enumerate().map(|(place, index)| (index, at(scene.nodes.len() + place))).collect()
     }
 
-    fn push_carriers(&mut self, scene: &crate::scene::Scene, carriers: &[(usize, Index<Node>)]) {
+    fn push_carriers(&mut self, scene: &crate::scene::Scene, carriers: &Carriers) {
         let Some(grid) = self.grid else { return };
         for (shown, _) in carriers {
             self.root.push(Node {

@@ -19,7 +19,8 @@ pub use material::{
     AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, Texture, Wrap,
 };
 pub use motion::{
-    Clip, ClipTrack, NamedSkeleton, ReachTask, Skin, Socket, SocketHandle, Space, Target, WeightRule,
+    Clip, ClipTrack, Morph, NamedSkeleton, ReachTask, Skin, Socket, SocketHandle, Space, State, Target,
+    WeightRule,
 };
 pub use shape::{Density, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode};
 pub use solid::{Hollow, KeptSide, PlaneCut, SolidOperation, SolidRecipe};
@@ -129,6 +130,10 @@ pub struct Model {
     pub skeletons: Vec<NamedSkeleton>,
     /// Skins, at most one for a shape.
     pub skins: Vec<Skin>,
+    /// States of shapes; those of one shape stand together.
+    pub morphs: Vec<Morph>,
+    /// Models that the document makes with other parameters, for states; their own states and motions are left out.
+    pub states: Vec<Self>,
     /// Motions.
     pub clips: Vec<Clip>,
     /// How far vertices may be from exact motions for clips that do not say, metres.
@@ -144,6 +149,11 @@ impl Model {
     #[must_use]
     pub fn shape(&self, handle: ShapeHandle) -> &Shape {
         &self.shapes[handle.0 as usize]
+    }
+
+    /// The states of a shape, in the order of their targets.
+    pub fn morphs_of(&self, shape: ShapeHandle) -> impl Iterator<Item = &Morph> {
+        self.morphs.iter().filter(move |morph| morph.shape == shape)
     }
 
     /// The material of a handle.

@@ -69,6 +69,33 @@ pub enum WeightRule {
     Explicit(Vec<Formula>),
 }
 
+/// A state of a shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Morph {
+    /// Its name.
+    pub name: String,
+    /// The shape.
+    pub shape: ShapeHandle,
+    /// Its weight where no clip moves it.
+    pub weight: f64,
+    /// What the shape is at weight 1.
+    pub state: State,
+}
+
+/// What a shape is at weight 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Another shape of the model.
+    Shape(ShapeHandle),
+    /// A shape of a model of [`Model::states`](super::Model::states).
+    Other {
+        /// Index of the model.
+        model: usize,
+        /// Its shape.
+        shape: ShapeHandle,
+    },
+}
+
 /// A motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
@@ -141,6 +168,13 @@ pub enum Target {
         /// Index of the joint.
         joint: usize,
     },
+    /// The weight of a morph target of the shape that a node shows.
+    Weight {
+        /// Index in [`Model::nodes`](super::Model::nodes).
+        node: usize,
+        /// The number of the target among those of the shape.
+        target: usize,
+    },
 }
 
 impl ClipTrack {
@@ -173,10 +207,12 @@ impl ClipTrack {
                 Space::Document => frame.scale(value.truncate()).extend(0.0),
                 Space::Rest | Space::File => value,
             },
+            Path::Weight => value,
         }
     }
 
-    /// What a value of the course makes of a place at rest: a translation or scale (x, y, z), or a rotation (x, y, z, w).
+    /// What a value of the course makes of a place at rest: a translation or scale (x, y, z), or a rotation (x, y, z, w); a
+    /// weight as it is.
     #[must_use]
     pub fn composed(&self, rest: &Transform, value: DVec4, frame: &Frame) -> DVec4 {
         let value = self.converted(value, frame);
@@ -193,6 +229,7 @@ impl ClipTrack {
                 DVec4::from(whole.normalize())
             }
             Path::Scale => (rest.scale * value.truncate()).extend(0.0),
+            Path::Weight => value,
         }
     }
 
@@ -203,6 +240,7 @@ impl ClipTrack {
             Path::Translation => place.translation = value.truncate(),
             Path::Rotation => place.rotation = DQuat::from_vec4(value),
             Path::Scale => place.scale = value.truncate(),
+            Path::Weight => {}
         }
     }
 

@@ -12,6 +12,7 @@
 mod inverse;
 mod law;
 mod limit;
+mod morphed;
 mod reduce;
 mod rotation;
 mod skeleton;
@@ -22,6 +23,7 @@ mod transform;
 pub use inverse::{Angles, Goal, InverseKinematics, Reached, Search, Stand};
 pub use law::{Interpolation, Keys, Law, LawFault, Speed};
 pub use limit::{Axis, Excess, Limits, Range};
+pub use morphed::{MorphedBox, MorphedState};
 pub use reduce::{Moving, Player, Reduced, ReducedTrack, Rig, Wanted, reduce};
 pub use rotation::{EulerOrder, about, from_angles, normalized_lerp, slerp, to_angles};
 pub use skeleton::{Bone, Joint, MOST_JOINTS, Skeleton, SkeletonFault};

@@ -7,12 +7,17 @@
 //!
 //! Players differ: some interpolate rotations on the sphere (glTF demands it), others by normalized straight
 //! lines (Blender, many engines). The bound holds for both. Points are corners of boxes; a weighted mean of
-//! affine maps moves no point of a box further than the worst corner, so a box stands for all it holds.
+//! affine maps moves no point of a box further than the worst corner, so a box stands for all it holds. Points that morph
+//! are p + sum w (q - p) = (1 - sum w) p + sum w q: they lie in the sums of the scaled boxes of all p and q, and of all p
+//! and q - p, and a weight that is wrong by e moves none further than e times the greatest |q - p|.
 //!
 //! Cost: O(samples * (nodes + tracks) * rounds), with at most some 20 rounds.
 
+use std::borrow::Cow;
+
 use glam::{DAffine3, DQuat, DVec3, DVec4};
 
+use super::morphed::MorphedBox;
 use super::rotation::{nearer, normalized_lerp, slerp};
 use super::track::Path;
 use super::transform::Transform;
@@ -26,6 +31,10 @@ pub struct Rig {
     pub rest: Vec<Transform>,
     /// For each node points in its space.
     pub points: Vec<Vec<DVec3>>,
+    /// For each node the weights of the morph targets of its mesh at rest.
+    pub weights: Vec<Vec<f64>>,
+    /// Points that morph.
+    pub morphed: Vec<MorphedBox>,
 }
 
 /// A part of a node that changes.
@@ -34,7 +43,9 @@ pub struct Moving<'a> {
     pub node: usize,
     /// Which part of it.
     pub path: Path,
-    /// Its value at a time: translation or scale (x, y, z), rotation (x, y, z, w); not relative to rest.
+    /// Which morph target a weight is of; 0 for other paths.
+    pub target: usize,
+    /// Its value at a time: translation or scale (x, y, z), rotation (x, y, z, w), weight (x); not relative to rest.
     pub exact: Box<dyn Fn(f64) -> DVec4 + Sync + 'a>,
     /// The times of its keys where it jumps from key to key, and is written so.
     pub steps: Option<Vec<f64>>,
@@ -182,7 +193,8 @@ impl<'a> Study<'a> {
         for sample in 0..self.times.len() {
             let value = |track: usize| self.values[track][sample];
             let worlds = worlds(self.rig, self.order, self.moving, value);
-            let reach = reaches(self.rig, self.order, &worlds);
+            let points = self.points(sample);
+            let reach = reaches(self.rig, &points, self.order, &worlds);
             for (lever, one) in levers.iter_mut().zip(self.moving) {
                 let outside = parents[one.node].map_or(DAffine3::IDENTITY, |parent| worlds[parent]);
                 let stretch = stretch(&outside);
@@ -191,11 +203,61 @@ impl<'a> Study<'a> {
                     Path::Rotation => reach[one.node],
                     // The points a scale moves lie within the reach over the least of its factors.
                     Path::Scale => reach[one.node] / least_factor(&worlds[one.node]) * stretch,
+                    Path::Weight => {
+                        let own = self.rig.morphed.iter().filter(|morphed| morphed.weights == one.node);
+                        own.map(|own| own.states[one.target].furthest * self::stretch(&worlds[own.node]))
+                            .fold(0.0, f64::max)
+                    }
                 });
             }
-            self.places.push(places(self.rig, &worlds));
+            self.places.push(places(&points, &worlds));
         }
         self.levers = levers;
+    }
+
+    /// The weights of a node's morph targets, where the values of tracks are given.
+    fn weights(&self, node: usize, value: impl Fn(usize) -> DVec4) -> Vec<f64> {
+        let mut weights = self.rig.weights[node].clone();
+        for (track, one) in self.moving.iter().enumerate() {
+            if one.node == node && one.path == Path::Weight {
+                weights[one.target] = value(track).x;
+            }
+        }
+        weights
+    }
+
+    /// For each node its points at a sample: those that do not morph, and the corners of the boxes of those that do.
+    fn points(&self, sample: usize) -> Cow<'a, [Vec<DVec3>]> {
+        if self.rig.morphed.is_empty() {
+            return Cow::Borrowed(&self.rig.points);
+        }
+        let mut points = self.rig.points.clone();
+        for morphed in &self.rig.morphed {
+            let weights = self.weights(morphed.weights, |track| self.values[track][sample]);
+            points[morphed.node].extend(morphed.at(&weights).corners());
+        }
+        Cow::Owned(points)
+    }
+
+    /// For each node how far its points are off by wrong weights alone.
+    fn slack(&self, sample: usize, played: &[DVec4], worlds: &[DAffine3]) -> Vec<f64> {
+        let mut slack = vec![0.0; worlds.len()];
+        for morphed in &self.rig.morphed {
+            let exact = self.weights(morphed.weights, |track| self.values[track][sample]);
+            let found = self.weights(morphed.weights, |track| played[track]);
+            let off = exact.iter().zip(found).zip(&morphed.states);
+            let off: f64 = off.map(|((exact, found), state)| (found - exact).abs() * state.furthest).sum();
+            slack[morphed.node] = f64::max(slack[morphed.node], off * stretch(&worlds[morphed.node]));
+        }
+        slack
+    }
+
+    /// The value of a track at rest.
+    fn at_rest(&self, one: &Moving<'_>) -> DVec4 {
+        match one.path {
+            Path::Weight => DVec4::X * self.rig.weights[one.node][one.target],
+            path => rest_value(&self.rig.rest[one.node], path),
+        }
     }
 
     /// The fewest keys found within a tolerance.
@@ -236,8 +298,7 @@ impl<'a> Study<'a> {
     fn finish(&self, mut tracks: Vec<ReducedTrack>, bound: f64) -> Reduced {
         let resting = |track: &ReducedTrack| {
             let one = &self.moving[track.track];
-            let rest = rest_value(&self.rig.rest[one.node], one.path);
-            track.times.len() == 1 && track.values[0] == rounded(rest)
+            track.times.len() == 1 && track.values[0] == rounded(self.at_rest(one))
         };
         let moved: Vec<ReducedTrack> = tracks.iter().filter(|track| !resting(track)).cloned().collect();
         if moved.is_empty() {
@@ -301,7 +362,7 @@ impl<'a> Study<'a> {
             return self.stepped(one, steps, written);
         }
         let values = &self.values[track];
-        let rest = rest_value(&self.rig.rest[one.node], one.path);
+        let rest = self.at_rest(one);
         let constant = |value: DVec4| values.iter().all(|other| gap(one.path, value, *other) <= limit);
         if constant(rest) {
             return written(vec![0.0], vec![rest]);
@@ -386,8 +447,12 @@ impl<'a> Study<'a> {
                     })
                     .collect();
                 let worlds = worlds(self.rig, self.order, self.moving, |track| played[track]);
-                let found = places(self.rig, &worlds);
-                let off = found.iter().zip(&self.places[sample]).map(|(found, exact)| found.distance(*exact));
+                let points = self.points(sample);
+                let slack = self.slack(sample, &played, &worlds);
+                let found = places(&points, &worlds);
+                let slack = points.iter().zip(slack).flat_map(|(own, slack)| own.iter().map(move |_| slack));
+                let off = found.iter().zip(&self.places[sample]).zip(slack);
+                let off = off.map(|((found, exact), slack)| found.distance(*exact) + slack);
                 worst = off.fold(worst, f64::max);
                 if worst > enough {
                     return worst;
@@ -399,6 +464,12 @@ impl<'a> Study<'a> {
 }
 
 impl ReducedTrack {
+    /// The value at a time, rotations on the sphere.
+    #[must_use]
+    pub fn at(&self, path: Path, time: f64) -> DVec4 {
+        self.play(path, Player::Sphere, time, &mut 0)
+    }
+
     /// The value at a time; `cursor` is the key that was used last, and times come in order.
     fn play(&self, path: Path, player: Player, time: f64, cursor: &mut usize) -> DVec4 {
         while *cursor + 1 < self.times.len() && self.times[*cursor + 1] <= time {
@@ -440,6 +511,7 @@ fn rest_value(rest: &Transform, path: Path) -> DVec4 {
         Path::Translation => rest.translation.extend(0.0),
         Path::Rotation => DVec4::from(rest.rotation),
         Path::Scale => rest.scale.extend(0.0),
+        Path::Weight => DVec4::ZERO,
     }
 }
 
@@ -478,6 +550,7 @@ fn worlds(
             Path::Translation => place.translation = value.truncate(),
             Path::Rotation => place.rotation = DQuat::from_vec4(value).normalize(),
             Path::Scale => place.scale = value.truncate(),
+            Path::Weight => {}
         }
     }
     let mut worlds = vec![DAffine3::IDENTITY; local.len()];
@@ -488,20 +561,20 @@ fn worlds(
     worlds
 }
 
-fn places(rig: &Rig, worlds: &[DAffine3]) -> Vec<DVec3> {
+fn places(points: &[Vec<DVec3>], worlds: &[DAffine3]) -> Vec<DVec3> {
     let of = |(points, world): (&Vec<DVec3>, &DAffine3)| {
         points.iter().map(|point| world.transform_point3(*point)).collect::<Vec<_>>()
     };
-    rig.points.iter().zip(worlds).flat_map(of).collect()
+    points.iter().zip(worlds).flat_map(of).collect()
 }
 
 /// For each node the greatest distance of a point that it carries from its origin, metres: over its own points, and
 /// for those of nodes below by the triangle inequality.
-fn reaches(rig: &Rig, order: &[usize], worlds: &[DAffine3]) -> Vec<f64> {
+fn reaches(rig: &Rig, points: &[Vec<DVec3>], order: &[usize], worlds: &[DAffine3]) -> Vec<f64> {
     let mut reach = vec![0.0_f64; worlds.len()];
     for node in order.iter().rev() {
         let origin = worlds[*node].translation;
-        for point in &rig.points[*node] {
+        for point in &points[*node] {
             reach[*node] = reach[*node].max(worlds[*node].transform_point3(*point).distance(origin));
         }
         if let Some(parent) = rig.parents[*node] {
@@ -522,89 +595,4 @@ fn least_factor(map: &DAffine3) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use glam::{DVec3, DVec4};
-
-    use super::{Moving, Reduced, Rig, Wanted, reduce};
-    use crate::geometry::number::sin_degrees;
-    use crate::motion::rotation::about;
-    use crate::motion::{Path, Transform};
-
-    fn arm() -> Rig {
-        let bone = Transform { translation: DVec3::Y, ..Transform::IDENTITY };
-        Rig {
-            parents: vec![None, Some(0)],
-            rest: vec![Transform::IDENTITY, bone],
-            points: vec![vec![], vec![DVec3::Y]],
-        }
-    }
-
-    fn reduced(tolerance: f64, exact: impl Fn(f64) -> DVec4 + Sync, path: Path) -> Reduced {
-        let moving = [Moving { node: 0, path, exact: Box::new(exact), steps: None }];
-        let wanted = Wanted { duration: 2.0, tolerance, rate: 60.0, stops: vec![1.0], most: 10_000 };
-        reduce(&arm(), &moving, &wanted)
-    }
-
-    #[test]
-    fn a_tighter_tolerance_takes_more_keys_and_is_kept() {
-        let mut before = 0;
-        for tolerance in [0.1, 0.01, 1e-3, 1e-4] {
-            let swing = |time: f64| DVec4::from(about(DVec3::Z, 60.0 * sin_degrees(180.0 * time)));
-            let found = reduced(tolerance, swing, Path::Rotation);
-            let keys = found.tracks[0].times.len();
-            assert!(found.bound <= tolerance, "{} at {tolerance}", found.bound);
-            assert!(found.bound > tolerance / 20.0, "{} at {tolerance}: more keys than needed", found.bound);
-            assert!(keys > before, "{keys} at {tolerance}");
-            before = keys;
-        }
-    }
-
-    #[test]
-    fn straight_ways_keep_their_ends_and_corners_alone() {
-        let found = reduced(1e-4, |time| DVec4::new(time.min(1.0), 0.0, 0.0, 0.0), Path::Translation);
-        assert_eq!(found.tracks[0].times, [0.0, 1.0, 2.0]);
-        assert!(found.bound < 1e-6);
-    }
-
-    #[test]
-    fn what_stays_at_rest_is_left_out_but_the_clip_keeps_its_length() {
-        let still = |_| DVec4::from(about(DVec3::X, 0.0));
-        let moving = [
-            Moving { node: 0, path: Path::Rotation, exact: Box::new(still), steps: None },
-            Moving {
-                node: 1,
-                path: Path::Translation,
-                exact: Box::new(|time| DVec4::new(0.0, 1.0 + time, 0.0, 0.0)),
-                steps: None,
-            },
-        ];
-        let wanted = Wanted { duration: 2.0, tolerance: 1e-3, rate: 60.0, stops: vec![], most: 10_000 };
-        let found = reduce(&arm(), &moving, &wanted);
-        assert_eq!(found.tracks.len(), 1);
-        assert_eq!((found.tracks[0].track, found.tracks[0].times.last()), (1, Some(&2.0)));
-    }
-
-    #[test]
-    fn steps_stay_steps() {
-        let jump = |time: f64| DVec4::new(if time < 0.75 { 0.0 } else { 1.0 }, 0.0, 0.0, 0.0);
-        let moving = [Moving {
-            node: 1,
-            path: Path::Translation,
-            exact: Box::new(jump),
-            steps: Some(vec![0.0, 0.5, 0.75]),
-        }];
-        let wanted = Wanted { duration: 2.0, tolerance: 1e-3, rate: 60.0, stops: vec![], most: 10_000 };
-        let found = reduce(&arm(), &moving, &wanted);
-        assert!(found.tracks[0].stepped && found.bound == 0.0);
-        // The key at 0.5 changes nothing; the last one lets the clip last.
-        assert_eq!(found.tracks[0].times, [0.0, 0.75, 2.0]);
-    }
-
-    /// Something that carries no point may be as coarse as it likes, but has two keys.
-    #[test]
-    fn rounding_to_single_precision_is_part_of_the_bound() {
-        let far = |time: f64| DVec4::new(1e6 + time / 3.0, 0.0, 0.0, 0.0);
-        let found = reduced(0.5, far, Path::Translation);
-        assert!(found.bound > 1e-3 && found.bound <= 0.5, "{}", found.bound);
-    }
-}
+mod tests;

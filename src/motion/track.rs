@@ -1,4 +1,4 @@
-//! What a law moves: a translation, a rotation or a scale, on top of the rest.
+//! What a law moves: a translation, a rotation or a scale, on top of the rest, or the weight of a morph target.
 
 use glam::{DMat3, DQuat, DVec3, DVec4};
 
@@ -16,6 +16,8 @@ pub enum Path {
     Rotation,
     /// The scale.
     Scale,
+    /// The weight of a morph target.
+    Weight,
 }
 
 /// How a part changes, relative to rest: translations are added in the parent's axes for nodes and in the rest frame
@@ -67,6 +69,8 @@ pub enum Course {
     Size(Law),
     /// One factor.
     Growth(Law),
+    /// A weight, in place of the one at rest.
+    Weight(Law),
 }
 
 /// A course and what it moves it on.
@@ -102,12 +106,13 @@ impl Course {
                 Path::Rotation
             }
             Self::Size(_) | Self::Growth(_) => Path::Scale,
+            Self::Weight(_) => Path::Weight,
         }
     }
 
     fn law(&self) -> Option<&Law> {
         match self {
-            Self::Offset(law) | Self::Size(law) | Self::Growth(law) => Some(law),
+            Self::Offset(law) | Self::Size(law) | Self::Growth(law) | Self::Weight(law) => Some(law),
             Self::Slide { law, .. }
             | Self::Along { law, .. }
             | Self::Facing { law, .. }
@@ -148,11 +153,11 @@ impl<'a> Track<'a> {
         Self { course, frames }
     }
 
-    /// The translation, scale (x, y, z) or rotation (x, y, z, w) at a time, relative to rest.
+    /// The translation, scale (x, y, z) or rotation (x, y, z, w) at a time, relative to rest; or the weight (x).
     #[must_use]
     pub fn at(&self, time: f64) -> DVec4 {
         match self.course {
-            Course::Offset(law) | Course::Size(law) => law.at(time),
+            Course::Offset(law) | Course::Size(law) | Course::Weight(law) => law.at(time),
             Course::Growth(law) => DVec3::splat(law.at(time).x).extend(0.0),
             Course::Slide { axis, law } => (*axis * law.at(time).x).extend(0.0),
             Course::Turn { axis, law } => DVec4::from(about(*axis, law.at(time).x)),

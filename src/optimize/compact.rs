@@ -2,11 +2,31 @@
 
 use crate::geometry::mesh;
 use crate::geometry::mesh::{Mesh, PointIndex, Vertex, VertexIndex};
-use crate::motion::Influences;
+use crate::scene::Geometry;
 
 /// Renumbers what is used, in the order it stands. O(size of the mesh); nothing moves when all is used.
-/// What is known of points goes with them.
-pub(super) fn compact(mesh: &mut Mesh, influences: Option<&mut Vec<Influences>>) {
+/// What is known of points and vertices goes with them.
+pub(super) fn compact(geometry: &mut Geometry) {
+    let (vertices, points) = compact_mesh(&mut geometry.mesh);
+    for target in &mut geometry.targets {
+        keep(&mut target.normals, vertices.as_deref());
+        keep(&mut target.points, points.as_deref());
+    }
+    if let Some(influences) = &mut geometry.influences {
+        keep(influences, points.as_deref());
+    }
+}
+
+/// Leaves out what is not used; all is where nothing is said.
+fn keep<T>(all: &mut Vec<T>, used: Option<&[bool]>) {
+    if let Some(used) = used {
+        let mut used = used.iter();
+        all.retain(|_| used.next().copied().unwrap_or(false));
+    }
+}
+
+/// Tells which vertices, and which points, were used; none where all were.
+fn compact_mesh(mesh: &mut Mesh) -> (Option<Vec<bool>>, Option<Vec<bool>>) {
     let mut vertex_used = vec![false; mesh.vertices.len()];
     let mut collapsed = false;
     for triangle in &mesh.triangles {
@@ -19,28 +39,26 @@ pub(super) fn compact(mesh: &mut Mesh, influences: Option<&mut Vec<Influences>>)
     if collapsed {
         drop_collapsed(mesh);
     }
-    if vertex_used.iter().any(|used| !used) {
-        let places = renumber(&vertex_used);
-        let mut keep = vertex_used.iter();
-        mesh.vertices.retain(|_| keep.next().copied().unwrap_or(false));
+    let some = |used: Vec<bool>| used.contains(&false).then_some(used);
+    let vertex_used = some(vertex_used);
+    if let Some(used) = &vertex_used {
+        let places = renumber(used);
+        keep(&mut mesh.vertices, Some(used));
         for triangle in &mut mesh.triangles {
             *triangle = triangle.map(|vertex| VertexIndex(places[vertex.0 as usize]));
         }
     }
     let mut point_used = vec![false; mesh.points.len()];
     mesh.vertices.iter().for_each(|vertex| point_used[vertex.point.0 as usize] = true);
-    if point_used.iter().any(|used| !used) {
-        let places = renumber(&point_used);
-        let mut keep = point_used.iter();
-        mesh.points.retain(|_| keep.next().copied().unwrap_or(false));
-        if let Some(influences) = influences {
-            let mut keep = point_used.iter();
-            influences.retain(|_| keep.next().copied().unwrap_or(false));
-        }
+    let point_used = some(point_used);
+    if let Some(used) = &point_used {
+        let places = renumber(used);
+        keep(&mut mesh.points, Some(used));
         for vertex in &mut mesh.vertices {
             vertex.point = PointIndex(places[vertex.point.0 as usize]);
         }
     }
+    (vertex_used, point_used)
 }
 
 fn renumber(used: &[bool]) -> Vec<u32> {
@@ -83,7 +101,7 @@ fn drop_collapsed(mesh: &mut Mesh) {
 mod tests {
     use glam::{DVec2, DVec3};
 
-    use super::compact;
+    use super::compact_mesh;
     use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
 
     #[test]
@@ -101,7 +119,7 @@ mod tests {
             triangles: vec![triangle(0, 3, 4), triangle(0, 1, 3), triangle(3, 4, 1)],
             runs: vec![Run { origin: 0, end: 1 }, Run { origin: 1, end: 2 }, Run { origin: 2, end: 3 }],
         };
-        compact(&mut mesh, None);
+        compact_mesh(&mut mesh);
         assert_eq!(mesh.triangles, vec![triangle(0, 1, 2)]);
         assert_eq!(mesh.runs, vec![Run { origin: 1, end: 1 }]);
         assert_eq!(mesh.points, vec![DVec3::ZERO, DVec3::X, DVec3::Y]);

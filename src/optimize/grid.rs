@@ -3,7 +3,8 @@
 //! Promise: one grid for all geometries of a scene, its step a power of two and its lines through the origin: what lies
 //! at one place in two shapes is rounded to one place, and reading back is exact in single precision, so that nothing
 //! that was closed opens. No point moves by more than half a step along each axis; the deviation of each geometry says
-//! by how much its points moved. Points that fall together are one. Not promised: that what was apart stays apart.
+//! by how much its points moved. Points that fall together are one, unless states part them again. Not promised: that
+//! what was apart stays apart.
 
 use std::collections::HashMap;
 
@@ -97,9 +98,10 @@ pub(super) fn snap(scene: &mut Scene, coarse: bool, share: f64) -> Result<(), To
     for geometry in &mut scene.geometries {
         let moved = snap_geometry(geometry, step);
         if moved > 0.0 {
-            geometry.deviation.bound += moved;
-            if geometry.deviation.evidence == Evidence::Exact {
-                geometry.deviation.evidence = Evidence::Proved;
+            let states = geometry.targets.iter_mut().map(|target| &mut target.deviation);
+            for deviation in states.chain([&mut geometry.deviation]) {
+                deviation.bound += moved;
+                deviation.evidence = deviation.evidence.max(Evidence::Proved);
             }
         }
     }
@@ -126,8 +128,13 @@ fn snap_geometry(geometry: &mut Geometry, step: f64) -> f64 {
     };
     geometry.mesh.points.iter_mut().for_each(|point| *point = snap(*point));
     geometry.wire.points.iter_mut().for_each(|point| point.position = snap(point.position));
-    join_points(geometry);
-    join_vertices(geometry);
+    for point in geometry.targets.iter_mut().flat_map(|target| &mut target.points) {
+        *point = snap(*point);
+    }
+    if geometry.targets.is_empty() {
+        join_points(geometry);
+        join_vertices(geometry);
+    }
     moved
 }
 

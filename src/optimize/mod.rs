@@ -29,7 +29,7 @@ pub enum Rounding {
 pub fn run(scene: &mut Scene, rounding: Rounding, order: Order) -> Result<(), TooCoarse> {
     let compacted = |scene: &mut Scene| {
         for geometry in &mut scene.geometries {
-            compact::compact(&mut geometry.mesh, geometry.influences.as_mut());
+            compact::compact(geometry);
         }
     };
     compacted(scene);

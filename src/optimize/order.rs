@@ -270,6 +270,12 @@ fn order_vertices(geometry: &mut Geometry) {
     if let Some(tangents) = &mut geometry.tangents {
         *tangents = order.iter().map(|vertex| tangents[*vertex as usize]).collect();
     }
+    for target in &mut geometry.targets {
+        if let Some(tangents) = &mut target.tangents {
+            *tangents = order.iter().map(|vertex| tangents[*vertex as usize]).collect();
+        }
+        rearrange(&mut target.normals, order.clone());
+    }
     rearrange(&mut mesh.vertices, order);
 }
 
@@ -337,6 +343,7 @@ mod tests {
             uv: true,
             tangents: Some(tangents),
             influences: None,
+            targets: Vec::new(),
             deviation: Deviation { bound: 0.0, evidence: Evidence::Exact },
             tolerance: None,
         }

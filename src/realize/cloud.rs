@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::source::extent;
+use super::extents::extent;
 use crate::geometry::curve::{AnyCurve, Curve as _, Side};
 use crate::geometry::number::{Bounds, sin_cos_degrees};
 use crate::geometry::surface::{AnySurface, Surface, SweptWall};

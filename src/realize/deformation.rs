@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
+use super::extents::Extents;
 use super::reach::reach;
-use super::source::Extents;
 use crate::geometry::curve::Curve as _;
 use crate::geometry::surface::{AxialDeformation, AxialKind, Deformation, Line, PathDeformation};
 use crate::geometry::tessellate::DeformError;

@@ -93,7 +93,7 @@ impl Maker<'_> {
 /// How far heights may carry a shape beyond its box: a miter is at most three heights long.
 pub(super) fn growth(
     model: &crate::model::Model,
-    extents: &super::source::Extents,
+    extents: &super::extents::Extents,
     recipe: &Displacement,
 ) -> f64 {
     let bounds = extents.bounds(recipe.of);

@@ -37,6 +37,13 @@ impl Cost {
         }
     }
 
+    /// With states of the mesh, each of which has points and normals of its own in memory and in the file.
+    pub(super) fn with_states(self, mesh: &Mesh, states: u64) -> Self {
+        let (vertices, points) = (mesh.vertices.len() as u64, mesh.points.len() as u64);
+        let one = vertices * (24 + 24) + points * 24;
+        Self { memory: self.memory.saturating_add(one.saturating_mul(states)), ..self }
+    }
+
     pub(super) fn times(self, count: u64) -> Self {
         Self {
             triangles: self.triangles.saturating_mul(count),

@@ -8,21 +8,25 @@ mod bent;
 mod cloud;
 mod deformation;
 mod displace;
+mod extents;
 mod facets;
 mod height;
 mod leaning;
 mod limit;
 mod material;
+mod morph;
 mod motion;
 mod nearest;
 mod node;
 mod normal_map;
+mod parameters;
 mod reach;
 mod shape;
 mod solid;
 mod source;
 mod subdivide;
 mod swept;
+mod textured;
 mod window;
 
 pub use normal_map::normal_maps;
@@ -91,6 +95,31 @@ pub enum RealizeError {
         place: DVec3,
         /// How far that one is from the nearest bone, in the document's unit.
         distance: f64,
+    },
+    /// Lines have no states.
+    #[error("it has lines, and triangles alone have states")]
+    MorphedWire,
+    /// A state has other triangles.
+    #[error("state `{state}` has {} points and {} triangles{}", found.0, found.1, if found == wanted {
+        ", as the shape has, but joined in another way".to_owned()
+    } else {
+        format!(", and the shape has {} and {}", wanted.0, wanted.1)
+    })]
+    Topology {
+        /// Its name.
+        state: String,
+        /// Points and triangles of the state by itself.
+        found: (usize, usize),
+        /// Points and triangles of the shape by itself.
+        wanted: (usize, usize),
+    },
+    /// A state cannot be made.
+    #[error("state `{state}` cannot be made: {error}")]
+    State {
+        /// Its name.
+        state: String,
+        /// Why.
+        error: Box<Self>,
     },
     /// Lines have no weights.
     #[error("it has lines, and joints carry triangles alone")]

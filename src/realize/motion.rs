@@ -8,10 +8,10 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::number::Bounds;
 use crate::model::{Clip, ClipTrack, Model, NamedSkeleton, ShapeHandle, Target, WeightRule};
 use crate::motion::{
-    Influences, Joint, Moving, Path, Rig, Track, Transform, Wanted, Weights, envelope_weights, reduce,
-    rigid_weights, weights_of,
+    Influences, Joint, MorphedBox, MorphedState, Moving, Path, ReducedTrack, Rig, Track, Transform, Wanted,
+    Weights, envelope_weights, reduce, rigid_weights, weights_of,
 };
-use crate::scene::{Animation, Channel, Node, Scene, Skin};
+use crate::scene::{Animation, Channel, Geometry, MorphTarget, Node, Scene, Skin};
 
 /// The most samples of a motion, times what is watched.
 const MOST_SAMPLES: usize = 8_000_000;
@@ -185,59 +185,92 @@ fn rig(model: &Model, places: &Places, scene: &Scene) -> Rig {
     let place =
         |node: &Node| Transform { translation: node.translation, rotation: node.rotation, scale: node.scale };
     let mut points: Vec<Vec<DVec3>> = scene.nodes.iter().map(|node| shown_box(scene, node)).collect();
+    let weights = scene.nodes.iter().map(|node| rest_weights(scene, node)).collect();
+    let mut morphed = Vec::new();
+    for (index, node) in scene.nodes.iter().enumerate() {
+        let Some(geometry) = shown(scene, node).filter(|own| node.skin.is_none() && !own.targets.is_empty())
+        else {
+            continue;
+        };
+        let all: Vec<usize> = (0..geometry.mesh.points.len()).collect();
+        morphed.push(morphed_box(geometry, (index, index), &all, &DAffine3::IDENTITY));
+    }
     for (named, first) in model.skeletons.iter().zip(&places.joints) {
         for (index, joint) in named.skeleton.joints.iter().enumerate() {
             points[first + index].extend([DVec3::ZERO, DVec3::Y * joint.length()]);
         }
     }
     for (skin, scene_skin) in model.skins.iter().zip(&scene.skins) {
-        let shown = scene
-            .nodes
-            .iter()
-            .find(|node| node.skin.is_some_and(|index| scene.skins[index].name == scene_skin.name));
-        let mesh = shown.and_then(|node| node.mesh).map(|mesh| scene.meshes[mesh].geometry);
-        let Some(geometry) = mesh else { continue };
-        for (joint, corners) in carried_boxes(model, skin.skeleton, &scene.geometries[geometry]) {
-            points[places.joints[skin.skeleton] + joint].extend(corners);
+        let carries = |node: &Node| node.skin.is_some_and(|index| scene.skins[index].name == scene_skin.name);
+        let Some(index) = scene.nodes.iter().position(carries) else { continue };
+        let Some(geometry) = shown(scene, &scene.nodes[index]) else { continue };
+        let joints = &model.skeletons[skin.skeleton].skeleton.joints;
+        for (joint, carried) in carried_points(joints.len(), geometry).iter().enumerate() {
+            if carried.is_empty() {
+                continue;
+            }
+            let (node, into) = (places.joints[skin.skeleton] + joint, joints[joint].bind().inverse());
+            if geometry.targets.is_empty() {
+                let own = carried.iter().map(|point| into.transform_point3(geometry.mesh.points[*point]));
+                points[node].extend(Bounds::of_points(own).corners());
+            } else {
+                morphed.push(morphed_box(geometry, (node, index), carried, &into));
+            }
         }
     }
     let parents: Vec<Option<usize>> = scene.nodes.iter().map(|node| node.parent).collect();
     let rest: Vec<Transform> = scene.nodes.iter().map(place).collect();
-    Rig { parents, rest, points }
+    Rig { parents, rest, points, weights, morphed }
 }
 
-/// The corners of the box of what a node shows; none where that is skinned.
+/// What a node shows.
+fn shown<'s>(scene: &'s Scene, node: &Node) -> Option<&'s Geometry> {
+    node.mesh.map(|mesh| &scene.geometries[scene.meshes[mesh].geometry])
+}
+
+/// The corners of the box of what a node shows; none where that is skinned or morphs.
 fn shown_box(scene: &Scene, node: &Node) -> Vec<DVec3> {
-    let Some(mesh) = node.mesh.filter(|_| node.skin.is_none()) else { return Vec::new() };
-    let geometry = &scene.geometries[scene.meshes[mesh].geometry];
-    let bounds = Bounds::of_points(geometry.mesh.points.iter().copied()).union(geometry.wire.bounds());
-    corners(&bounds)
+    let still = |own: &&Geometry| node.skin.is_none() && own.targets.is_empty();
+    shown(scene, node).filter(still).map_or_else(Vec::new, |own| own.bounds().corners().to_vec())
 }
 
-fn corners(bounds: &Bounds) -> Vec<DVec3> {
-    let pick = |corner: u32, axis: usize| {
-        if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] }
+/// The weights of what a node shows.
+fn rest_weights(scene: &Scene, node: &Node) -> Vec<f64> {
+    let targets = shown(scene, node).map_or(&[][..], |geometry| &geometry.targets);
+    targets.iter().map(|target| target.weight).collect()
+}
+
+/// The box of some points that morph, in a node's space.
+fn morphed_box(
+    geometry: &Geometry,
+    (node, weights): (usize, usize),
+    some: &[usize],
+    into: &DAffine3,
+) -> MorphedBox {
+    let bounds =
+        |points: &[DVec3]| Bounds::of_points(some.iter().map(|point| into.transform_point3(points[*point])));
+    let base = &geometry.mesh.points;
+    let state = |target: &MorphTarget| {
+        let ways = some.iter().map(|at| into.transform_vector3(target.points[*at] - base[*at]));
+        MorphedState {
+            bounds: bounds(&target.points),
+            ways: Bounds::of_points(ways.clone()),
+            furthest: ways.map(DVec3::length).fold(0.0, f64::max),
+        }
     };
-    (0..8).map(|corner| DVec3::new(pick(corner, 0), pick(corner, 1), pick(corner, 2))).collect()
+    let states = geometry.targets.iter().map(state).collect();
+    MorphedBox { node, weights, base: bounds(base), states }
 }
 
-/// For each joint that carries points the box of these in its rest frame.
-fn carried_boxes(
-    model: &Model,
-    skeleton: usize,
-    geometry: &crate::scene::Geometry,
-) -> Vec<(usize, Vec<DVec3>)> {
-    let joints = &model.skeletons[skeleton].skeleton.joints;
-    let into: Vec<DAffine3> = joints.iter().map(|joint| joint.bind().inverse()).collect();
-    let mut boxes = vec![Bounds::EMPTY; joints.len()];
-    for (point, influences) in geometry.mesh.points.iter().zip(geometry.influences.iter().flatten()) {
+/// For each joint the points that it carries.
+fn carried_points(joints: usize, geometry: &Geometry) -> Vec<Vec<usize>> {
+    let mut carried = vec![Vec::new(); joints];
+    for (point, influences) in geometry.influences.iter().flatten().enumerate() {
         for influence in influences.iter().filter(|influence| influence.weight > 0) {
-            let joint = usize::from(influence.joint);
-            boxes[joint] = boxes[joint].with_point(into[joint].transform_point3(*point));
+            carried[usize::from(influence.joint)].push(point);
         }
     }
-    let carrying = boxes.iter().enumerate().filter(|(_, bounds)| bounds.min.x <= bounds.max.x);
-    carrying.map(|(joint, bounds)| (joint, corners(bounds))).collect()
+    carried
 }
 
 fn bake(
@@ -247,14 +280,14 @@ fn bake(
     (index, clip): (usize, &Clip),
 ) -> (Animation, Option<Loose>) {
     let node = |track: &ClipTrack| match track.target {
-        Target::Node(node) => node,
+        Target::Node(node) | Target::Weight { node, .. } => node,
         Target::Joint { skeleton, joint } => places.joints[skeleton] + joint,
     };
     let rig = watched(rig, clip.tracks.iter().map(node));
     let tolerance = clip.tolerance.or(model.motion_tolerance).unwrap_or_else(|| size(&rig) / FINE);
     let moving: Vec<Moving<'_>> =
         clip.tracks.iter().map(|track| moving(model, &rig, track, node(track))).collect();
-    let watched: usize = rig.points.iter().map(Vec::len).sum();
+    let watched = rig.points.iter().map(Vec::len).sum::<usize>() + 8 * rig.morphed.len();
     let wanted = Wanted {
         duration: clip.duration,
         tolerance,
@@ -263,17 +296,11 @@ fn bake(
         most: MOST_SAMPLES / (watched + 4 * moving.len() + 1),
     };
     let reduced = reduce(&rig, &moving, &wanted);
-    let channel = |track: crate::motion::ReducedTrack| Channel {
-        node: moving[track.track].node,
-        path: moving[track.track].path,
-        stepped: track.stepped,
-        times: track.times,
-        values: track.values,
-    };
+    let channels = channels(&rig, &moving, reduced.tracks);
     let loose = (reduced.bound > tolerance).then_some(Loose { clip: index, bound: reduced.bound, tolerance });
     let animation = Animation {
         name: clip.name.clone(),
-        channels: reduced.tracks.into_iter().map(channel).collect(),
+        channels,
         looped: clip.looped,
         events: clip.events.clone(),
         reach: reduced.reach,
@@ -284,10 +311,46 @@ fn bake(
     (animation, loose)
 }
 
+/// Reduced tracks as a file has them: the weights of a node are one channel, at the times of all of their keys.
+fn channels(rig: &Rig, moving: &[Moving<'_>], tracks: Vec<ReducedTrack>) -> Vec<Channel> {
+    let mut channels: Vec<Channel> = Vec::new();
+    let (weights, places): (Vec<_>, Vec<_>) =
+        tracks.into_iter().partition(|track| moving[track.track].path == Path::Weight);
+    for track in places {
+        let Moving { node, path, .. } = moving[track.track];
+        let width = if path == Path::Rotation { 4 } else { 3 };
+        let values = track.values.iter().flat_map(|value| value.to_array().into_iter().take(width)).collect();
+        channels.push(Channel { node, path, stepped: track.stepped, times: track.times, values });
+    }
+    let node = |track: &ReducedTrack| moving[track.track].node;
+    let mut nodes: Vec<usize> = weights.iter().map(node).collect();
+    nodes.dedup();
+    nodes.sort_unstable();
+    nodes.dedup();
+    for node in nodes {
+        let own: Vec<&ReducedTrack> =
+            weights.iter().filter(|track| moving[track.track].node == node).collect();
+        let mut times: Vec<f64> = own.iter().flat_map(|track| track.times.iter().copied()).collect();
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        let mut values = rig.weights[node].repeat(times.len());
+        let count = rig.weights[node].len();
+        for track in &own {
+            for (time, row) in times.iter().zip(values.chunks_mut(count)) {
+                row[moving[track.track].target] = track.at(Path::Weight, *time).x;
+            }
+        }
+        let stepped = own.iter().any(|track| track.stepped && track.times.len() > 1);
+        channels.push(Channel { node, path: Path::Weight, stepped, times, values });
+    }
+    channels
+}
+
 /// The rig with points where something moves that carries none: a tenth of the model's size from it.
 fn watched(rig: &Rig, moved: impl Iterator<Item = usize>) -> Rig {
     let mut rig = rig.clone();
     let mut carries: Vec<bool> = rig.points.iter().map(|points| !points.is_empty()).collect();
+    rig.morphed.iter().for_each(|morphed| carries[morphed.node] = true);
     for node in 0..carries.len() {
         let mut above = if carries[node] { rig.parents[node] } else { None };
         for _ in 0..rig.parents.len() {
@@ -321,7 +384,12 @@ fn size(rig: &Rig) -> f64 {
         let map = world(node);
         rig.points[node].iter().map(move |point| map.transform_point3(*point)).collect::<Vec<_>>()
     };
-    let bounds = Bounds::of_points((0..rig.points.len()).flat_map(of));
+    let of_morphed = |morphed: &MorphedBox| {
+        let map = world(morphed.node);
+        morphed.at(&rig.weights[morphed.weights]).corners().map(|corner| map.transform_point3(corner))
+    };
+    let morphed = rig.morphed.iter().flat_map(of_morphed);
+    let bounds = Bounds::of_points((0..rig.points.len()).flat_map(of).chain(morphed));
     let diagonal = (bounds.max - bounds.min).length();
     if diagonal.is_finite() && diagonal > 0.0 { diagonal } else { 1.0 }
 }
@@ -330,12 +398,18 @@ fn size(rig: &Rig) -> f64 {
 fn moving<'a>(model: &'a Model, rig: &Rig, track: &'a ClipTrack, node: usize) -> Moving<'a> {
     let playing = Track::new(&track.course);
     let (path, rest) = (track.course.path(), rig.rest[node]);
+    let target = if let Target::Weight { target, .. } = track.target { target } else { 0 };
+    let at_rest_weight = rig.weights[node].get(target).copied().unwrap_or(0.0);
     let exact = move |time: f64| {
         let value = track.composed(&rest, playing.at(time), &model.frame);
-        if value.is_finite() { value } else { at_rest(&rest, path) }
+        match path {
+            _ if value.is_finite() => value,
+            Path::Weight => DVec4::X * at_rest_weight,
+            _ => at_rest(&rest, path),
+        }
     };
     let steps = track.course.stepped().then(|| track.course.stops());
-    Moving { node, path, exact: Box::new(exact), steps }
+    Moving { node, path, target, exact: Box::new(exact), steps }
 }
 
 fn at_rest(rest: &Transform, path: Path) -> DVec4 {
@@ -343,5 +417,6 @@ fn at_rest(rest: &Transform, path: Path) -> DVec4 {
         Path::Translation => rest.translation.extend(0.0),
         Path::Rotation => DVec4::from(rest.rotation),
         Path::Scale => rest.scale.extend(0.0),
+        Path::Weight => DVec4::ZERO,
     }
 }

@@ -87,6 +87,16 @@ impl Field {
         self.jet(u, v).point
     }
 
+    /// The surface.
+    pub(super) fn surface(&self) -> &AnySurface {
+        &self.surface
+    }
+
+    /// Whether u, and v, come round.
+    pub(super) fn closed(&self) -> [bool; 2] {
+        [self.closed.0, self.closed.1]
+    }
+
     /// Whether parameters are those of a side.
     pub(super) fn on_rim(&self, (u, v): (f64, f64)) -> bool {
         [self.u.start, self.u.end].contains(&u) || [self.v.start, self.v.end].contains(&v)

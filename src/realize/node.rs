@@ -5,13 +5,17 @@ use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use super::limit::{Cost, Spent};
 use super::material::group_by_material;
 use super::shape::{self, Made, Maker};
-use super::{Options, RealizeError, Realized, motion};
+use super::textured::wants_uv;
+use super::{Options, RealizeError, Realized, morph, motion};
 use crate::geometry::mesh;
 use crate::model::{MaterialHandle, Model, ShapeHandle};
-use crate::scene::{Geometry, MeshUse, Node, Scene};
+use crate::scene::{Geometry, MeshUse, MorphTarget, Node, Scene};
 
 /// A shape with the material that a node puts on it.
 type Shown = (ShapeHandle, Option<MaterialHandle>);
+
+/// A shape as triangles with its states.
+type Morphed = (Made, Vec<MorphTarget>);
 
 pub(super) fn scene(model: &Model, options: &Options) -> Result<Realized, Vec<(ShapeHandle, RealizeError)>> {
     let mut shown: Vec<Shown> = Vec::new();
@@ -40,21 +44,29 @@ fn make_all(
     options: &Options,
     shapes: &[ShapeHandle],
     shown: &[Shown],
-) -> Result<Vec<Made>, Vec<(ShapeHandle, RealizeError)>> {
+) -> Result<Vec<Morphed>, Vec<(ShapeHandle, RealizeError)>> {
     let maker = Maker::new(model, options);
     let spent = Spent::default();
     let make = |handle: &ShapeHandle| {
         spent.check(&model.limits).map_err(|error| (*handle, error))?;
         let overrides: Vec<_> =
             shown.iter().filter(|(shape, _)| shape == handle).map(|(_, material)| *material).collect();
-        let uv = shape::wants_uv(model, *handle, &overrides);
-        let mut made = maker.make(*handle, uv).map_err(|error| (*handle, error))?;
-        spent.add(Cost::of(&made.mesh).plus(Cost::of_wire(&made.wire)));
-        shape::to_metres(&mut made, &model.frame);
-        Ok(group_by_material(made))
+        let uv = wants_uv(model, *handle, &overrides);
+        let finished = |maker: &Maker<'_>, handle: ShapeHandle| {
+            let mut made = maker.make(handle, uv)?;
+            shape::to_metres(&mut made, &model.frame);
+            Ok(group_by_material(made))
+        };
+        let made = finished(&maker, *handle).map_err(|error| (*handle, error))?;
+        let states = model.morphs_of(*handle).count() as u64;
+        let cost = Cost::of(&made.mesh).plus(Cost::of_wire(&made.wire));
+        let morphed = cost.with_states(&made.mesh, states);
+        morphed.check(&model.limits).map_err(|error| (*handle, error))?;
+        spent.add(morphed);
+        morph::morphed((model, *handle), options, made, &finished).map_err(|error| (*handle, error))
     };
     // One shape is made on this thread: waking others costs more than a small shape takes.
-    let results: Vec<Result<Made, _>> =
+    let results: Vec<Result<Morphed, _>> =
         if let [one] = shapes { vec![make(one)] } else { shapes.par_iter().map(make).collect() };
     // Which shapes were still made when the sum passed a limit depends on the threads; that it passed does not.
     if let (Err(error), Some(first)) = (spent.check(&model.limits), shapes.first()) {
@@ -71,13 +83,13 @@ fn make_all(
     if errors.is_empty() { Ok(made) } else { Err(errors) }
 }
 
-fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Made>) -> Realized {
+fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Morphed>) -> Realized {
     let materials = used_materials(shown, shapes, &made);
     let position = |handle: MaterialHandle| materials.iter().position(|known| *known == handle);
     let mut scene = Scene { name: model.name.clone(), ..Scene::default() };
     for (shape, material) in shown {
         let geometry = shapes.iter().position(|known| known == shape).unwrap_or(0);
-        let own = &made[geometry].materials;
+        let own = &made[geometry].0.materials;
         let worn = own.iter().map(|own| material.or(*own).and_then(position)).collect();
         let name = match material {
             Some(material)
@@ -90,19 +102,20 @@ fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Ma
         scene.meshes.push(MeshUse { name, geometry, materials: worn });
     }
     let mut notes = Vec::new();
-    for (made, handle) in made.into_iter().zip(shapes) {
+    for ((made, targets), handle) in made.into_iter().zip(shapes) {
         let overrides: Vec<_> =
             shown.iter().filter(|(shape, _)| shape == handle).map(|(_, material)| *material).collect();
         notes.extend(&made.notes);
         scene.geometries.push(Geometry {
             name: model.shape(*handle).name.clone(),
-            uv: shape::wants_uv(model, *handle, &overrides),
+            uv: wants_uv(model, *handle, &overrides),
             tolerance: made.tolerance,
             deviation: made.deviation,
             mesh: made.mesh,
             wire: made.wire,
             tangents: None,
             influences: None,
+            targets,
         });
     }
     scene.materials = materials.iter().map(|handle| model.material(*handle).clone()).collect();
@@ -111,11 +124,11 @@ fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Ma
     Realized { scene, shapes: shapes.to_vec(), loose: Vec::new(), notes }
 }
 
-fn used_materials(shown: &[Shown], shapes: &[ShapeHandle], made: &[Made]) -> Vec<MaterialHandle> {
+fn used_materials(shown: &[Shown], shapes: &[ShapeHandle], made: &[Morphed]) -> Vec<MaterialHandle> {
     let mut used = Vec::new();
     for (shape, material) in shown {
         let geometry = shapes.iter().position(|known| known == shape).unwrap_or(0);
-        for own in &made[geometry].materials {
+        for own in &made[geometry].0.materials {
             if let Some(handle) = material.or(*own)
                 && !used.contains(&handle)
             {

@@ -6,7 +6,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::cloud::{cloud, points};
-use super::source::Extents;
+use super::extents::Extents;
 use crate::geometry::number::{Bounds, hypot};
 use crate::model::{Model, Recipe, ShapeHandle, SolidOperation, SolidRecipe};
 
@@ -180,7 +180,7 @@ fn of_recipe(recipe: &Recipe, direction: DVec3) -> (f64, f64) {
             ball(shape.radius, (shape.size / 2.0 - shape.radius).dot(direction.abs()))
         }
         Recipe::Geodesic(shape) => ball(shape.radius, 0.0),
-        Recipe::Cuboid { .. } | Recipe::Plane(_) => of_box(&super::source::extent(recipe), direction),
+        Recipe::Cuboid { .. } | Recipe::Plane(_) => of_box(&super::extents::extent(recipe), direction),
         other => of_points(cloud(other).into_iter(), direction),
     }
 }

@@ -2,10 +2,11 @@
 
 use glam::{DAffine3, DMat3};
 
+use super::extents::Extents;
 use super::limit::{self, Cost};
 use super::material::{middle, own_or, show_normals, source_of, split_by_element};
 use super::reach::bent;
-use super::source::{Extents, source_count};
+use super::source::source_count;
 use super::{Faces, Note, Options, RealizeError};
 use crate::geometry::mesh;
 use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
@@ -16,9 +17,7 @@ use crate::geometry::tessellate::{
     based_map, cuboid, deform, extrude, field_surface, geodesic, height_map, patchwork, perturbed, plane,
     quadric, revolve, rounded_box, sheet, sweep, trimmed, two_sided, wire,
 };
-use crate::model::{
-    Displacement, Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing, UvMode,
-};
+use crate::model::{Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing};
 
 /// A shape as triangles in its own space or its user's.
 #[derive(Clone, Debug)]
@@ -31,6 +30,8 @@ pub(super) struct Made {
     pub(super) tolerance: Option<f64>,
     /// What a person should know, each with the part it is about.
     pub(super) notes: Vec<(ShapeHandle, Note)>,
+    /// How often the cages in it were refined for their tolerance, at most.
+    pub(super) levels: u32,
 }
 
 /// Makes shapes of one model.
@@ -41,6 +42,8 @@ pub(super) struct Maker<'a> {
     pub(super) extents: Extents,
     /// Triangles that each shape has at least.
     least: Vec<u64>,
+    /// How often cages that are refined for a tolerance are refined at least.
+    pub(super) levels: u32,
 }
 
 /// What a shape gets from those that use it, as lengths in the space where it is placed.
@@ -75,6 +78,7 @@ impl Made {
             deviation: Deviation::NONE,
             tolerance: None,
             notes: Vec::new(),
+            levels: 0,
         }
     }
 }
@@ -82,7 +86,18 @@ impl Made {
 impl<'a> Maker<'a> {
     pub(super) fn new(model: &'a Model, options: &Options) -> Self {
         let coarser = if options.coarser > 0.0 { options.coarser } else { 1.0 };
-        Self { model, coarser, extents: super::source::extents(model), least: limit::least_triangles(model) }
+        Self {
+            model,
+            coarser,
+            extents: super::extents::extents(model),
+            least: limit::least_triangles(model),
+            levels: 0,
+        }
+    }
+
+    /// The same, which refines cages at least so often.
+    pub(super) fn with_levels(self, levels: u32) -> Self {
+        Self { levels, ..self }
     }
 
     /// The shape in the document's unit, its placement applied. Anchors carry the index that
@@ -176,6 +191,7 @@ impl<'a> Maker<'a> {
             // In the space before the placement, which scales it back with the rest.
             tolerance: (!has_fixed_grid(shape)).then_some(tolerance / stretch),
             notes: Vec::new(),
+            levels: 0,
         };
         let made = match &shape.recipe {
             Recipe::Cuboid { size, center } => Ok(cuboid(*size, *center, uv)),
@@ -260,7 +276,7 @@ impl<'a> Maker<'a> {
     /// Tolerance in the document's unit; where none is written, the diagonal of the placed shape / 2000.
     fn tolerance(&self, shape: &Shape, written: Option<f64>) -> f64 {
         let tolerance = written.unwrap_or_else(|| {
-            let diagonal = super::source::extent(&shape.recipe).diagonal();
+            let diagonal = super::extents::extent(&shape.recipe).diagonal();
             diagonal * stretch(&shape.options.placement.matrix3) / 2000.0
         });
         tolerance * self.coarser
@@ -294,6 +310,7 @@ impl<'a> Maker<'a> {
             deviation: Deviation::NONE,
             tolerance: None,
             notes: notes.into_iter().flatten().map(|note| (handle, note)).collect(),
+            levels: 0,
         })
     }
 
@@ -395,6 +412,7 @@ pub(super) fn join(whole: &mut Made, part: &Made) {
     whole.wire.append(&part.wire, offset);
     whole.materials.extend(&part.materials);
     whole.deviation = whole.deviation.union(part.deviation);
+    whole.levels = whole.levels.max(part.levels);
     whole.tolerance = match (whole.tolerance, part.tolerance) {
         (Some(one), Some(other)) => Some(one.max(other)),
         (one, other) => one.or(other),
@@ -457,37 +475,4 @@ pub(super) fn flatten(mut made: Made) -> Made {
 /// Turns and scales a finished shape from the document's unit and axes to metres with y up.
 pub(super) fn to_metres(made: &mut Made, frame: &Frame) {
     place(made, &frame.map());
-}
-
-/// Whether a shape carries texture coordinates, by its materials and what it asks for.
-pub(super) fn wants_uv(model: &Model, handle: ShapeHandle, overrides: &[Option<MaterialHandle>]) -> bool {
-    let shape = model.shape(handle);
-    match shape.options.uv {
-        UvMode::Always => true,
-        UvMode::None => false,
-        UvMode::Auto => {
-            let textured = |material: &MaterialHandle| model.material(*material).has_texture();
-            overrides.iter().flatten().any(textured) || shows_texture(model, handle)
-        }
-    }
-}
-
-/// Whether a material with a texture is on the shape or a part of it. Shapes come after their parts, so one
-/// pass over those before it is enough however often parts share parts.
-fn shows_texture(model: &Model, handle: ShapeHandle) -> bool {
-    let textured = |material: &MaterialHandle| model.material(*material).has_texture();
-    let mut shows: Vec<bool> = Vec::with_capacity(handle.0 as usize + 1);
-    for shape in &model.shapes[..=handle.0 as usize] {
-        let of_parts = match &shape.recipe {
-            Recipe::Assembly(parts) => parts.iter().any(|(part, _)| shows[part.0 as usize]),
-            Recipe::Deformed { of, .. } | Recipe::Displaced(Displacement { of, .. }) => shows[of.0 as usize],
-            Recipe::Subdivided(refined) => shows[refined.cage.0 as usize],
-            Recipe::Solid(solid) => solid.parts.iter().any(|part| shows[part.0 as usize]),
-            Recipe::Polygons { materials, .. } => materials.iter().flatten().any(textured),
-            _ => false,
-        };
-        let drawn = model.normal_maps.iter().any(|map| map.shape.0 as usize == shows.len());
-        shows.push(of_parts || drawn || shape.options.material.iter().any(textured));
-    }
-    shows.pop().unwrap_or(false)
 }

@@ -229,6 +229,7 @@ impl Work<'_> {
             deviation,
             tolerance: parts.tolerance,
             notes: parts.notes.clone(),
+            levels: parts.levels,
         }
     }
 

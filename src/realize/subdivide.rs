@@ -29,7 +29,7 @@ impl Maker<'_> {
         let tolerance =
             inherited.tolerance.unwrap_or_else(|| cage.bounds().diagonal() / 2000.0) * self.coarser;
         let aim = (tolerance - inherited.rounding).max(tolerance / 2.0);
-        let options = Options {
+        let mut options = Options {
             scheme: recipe.scheme,
             aim: recipe.levels.map_or(Aim::Tolerance(aim), Aim::Levels),
             limit: recipe.limit,
@@ -38,12 +38,16 @@ impl Maker<'_> {
             corners: recipe.corners.clone(),
             triangulate: recipe.triangulate,
         };
-        let refined = subdivide(&cage, &options, limit::triangle_limit(&self.model.limits)).map_err(
-            |fault| match fault {
-                SubdivideFault::TooMany { needed, .. } => limit::in_terms_of(needed, &self.model.limits),
-                fault => RealizeError::Subdivide { shape: handle, cage: recipe.cage, fault },
-            },
-        )?;
+        let refuse = |fault| match fault {
+            SubdivideFault::TooMany { needed, .. } => limit::in_terms_of(needed, &self.model.limits),
+            fault => RealizeError::Subdivide { shape: handle, cage: recipe.cage, fault },
+        };
+        let most = limit::triangle_limit(&self.model.limits);
+        let mut refined = subdivide(&cage, &options, most).map_err(refuse)?;
+        if recipe.levels.is_none() && refined.levels < self.levels {
+            options.aim = Aim::Levels(self.levels);
+            refined = subdivide(&cage, &options, most).map_err(refuse)?;
+        }
         let (shading, crease_angle) = match shape.options.smoothing {
             Smoothing::Auto => (Shading::Auto, shape.options.crease_angle),
             Smoothing::Flat => (Shading::Flat, 0.0),
@@ -66,6 +70,7 @@ impl Maker<'_> {
                 .then(|| (handle, note(refined.triangulated)))
                 .into_iter()
                 .collect(),
+            levels: if recipe.levels.is_none() { refined.levels } else { 0 },
         };
         made.mesh.vertices.iter_mut().for_each(|vertex| vertex.anchor.source = *next_source);
         *next_source += 1;

@@ -9,6 +9,7 @@ mod deviation;
 pub mod facts;
 mod heights;
 mod joints;
+mod morphs;
 mod motion;
 mod perturbed;
 mod polygons;
@@ -19,6 +20,7 @@ pub use assertion::{Check, Fault};
 pub use deviation::{deviation_maps, measure_deviation};
 pub use heights::HeightFacts;
 pub use joints::JointFacts;
+pub use morphs::MorphFacts;
 pub use motion::{ClipFacts, PoseFacts, PosedVertex, ReachFacts, ReachFrame, SkinFacts};
 pub use perturbed::PerturbedFacts;
 pub use quadrics::QuadricFacts;
@@ -164,6 +166,9 @@ pub struct ShapeFacts {
     pub lines: Option<LineFacts>,
     /// Distance from the exact shape.
     pub deviation: DeviationFacts,
+    /// Its states, by their names.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub morphs: IndexMap<String, MorphFacts>,
     /// The polygons it was made from.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub polygons: Option<PolygonFacts>,
@@ -193,6 +198,16 @@ pub enum Kind {
     Proved,
     /// The greatest of dense samples, with a margin.
     Sampled,
+}
+
+impl From<Evidence> for Kind {
+    fn from(evidence: Evidence) -> Self {
+        match evidence {
+            Evidence::Exact => Self::Exact,
+            Evidence::Proved => Self::Proved,
+            Evidence::Sampled => Self::Sampled,
+        }
+    }
 }
 
 /// A node of the file.
@@ -310,14 +325,11 @@ fn shape_facts(
         deviation: DeviationFacts {
             tolerance: known.tolerance,
             bound: known.deviation.bound + single_rounding(extent(&facts).reach()),
-            kind: match known.deviation.evidence {
-                Evidence::Exact => Kind::Exact,
-                Evidence::Proved => Kind::Proved,
-                Evidence::Sampled => Kind::Sampled,
-            },
+            kind: known.deviation.evidence.into(),
             measured,
         },
         polygons: polygons::polygon_facts(model, handle),
+        morphs: morphs::morphs(file, known)?,
         facts,
     })
 }

@@ -9,7 +9,9 @@ use serde::Serialize;
 
 use super::Extent;
 use crate::geometry::number::Bounds;
-use crate::gltf::{Read, ReadAnimation, ReadChannel, ReadError, ReadInfluences, ReadSkin, Written};
+use crate::gltf::{
+    Read, ReadAnimation, ReadChannel, ReadError, ReadInfluences, ReadSkin, ReadTarget, Written,
+};
 use crate::model::{Model, ReachTask};
 use crate::motion::{Path, Transform, slerp};
 
@@ -97,11 +99,14 @@ pub struct PoseFacts {
     pub time: f64,
     /// Places of joints and of nodes that move, in the scene, column by column.
     pub nodes: IndexMap<String, [f64; 16]>,
-    /// For each skinned mesh some of its vertices.
+    /// For each mesh with morph targets that shows in a node its weights there.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub weights: IndexMap<String, Vec<f64>>,
+    /// For each mesh that joints carry or weights move some of its vertices, at the first node that shows it.
     pub vertices: IndexMap<String, Vec<PosedVertex>>,
 }
 
-/// A skinned vertex.
+/// A vertex that joints or weights move.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct PosedVertex {
     /// Its number in the mesh.
@@ -113,12 +118,22 @@ pub struct PosedVertex {
 /// The skins and clips of a file, by their names.
 pub(super) type Motion = (IndexMap<String, SkinFacts>, IndexMap<String, ClipFacts>);
 
-/// A mesh that joints carry.
+/// A mesh that joints carry or weights move, at the first node that shows it.
 struct Carried {
     mesh: usize,
     name: String,
-    skin: usize,
+    node: usize,
+    skin: Option<usize>,
     influences: Vec<ReadInfluences>,
+    targets: Vec<ReadTarget>,
+}
+
+/// The scene at a time.
+struct Played {
+    /// The matrices of all nodes.
+    worlds: Vec<DMat4>,
+    /// For each node the weights of its mesh.
+    weights: Vec<Vec<f64>>,
 }
 
 /// A file that can be played.
@@ -128,6 +143,7 @@ struct Stage<'a> {
     carried: Vec<Carried>,
     parents: Vec<Option<usize>>,
     rest: Vec<Transform>,
+    weights: Vec<Vec<f64>>,
     order: Vec<usize>,
 }
 
@@ -173,18 +189,22 @@ impl<'a> Stage<'a> {
             }
         }
         let mut carried: Vec<Carried> = Vec::new();
-        for node in nodes {
-            let (Some(mesh), Some(skin)) = (node.mesh, node.skin) else { continue };
-            if carried.iter().any(|known| known.mesh == mesh.value()) {
+        for (index, node) in nodes.iter().enumerate() {
+            let Some(mesh) = node.mesh.map(|mesh| mesh.value()) else { continue };
+            let targets = file.targets(mesh)?;
+            let known = carried.iter().any(|known| known.mesh == mesh);
+            if known || (node.skin.is_none() && targets.is_empty()) {
                 continue;
             }
-            let influences = file.influences(mesh.value())?.unwrap_or_default();
-            let name = file.root.meshes[mesh.value()].name.clone().unwrap_or_default();
-            carried.push(Carried { mesh: mesh.value(), name, skin: skin.value(), influences });
+            let skin = node.skin.map(|skin| skin.value());
+            let influences = file.influences(mesh)?.filter(|_| skin.is_some()).unwrap_or_default();
+            let name = file.root.meshes[mesh].name.clone().unwrap_or_default();
+            carried.push(Carried { mesh, name, node: index, skin, influences, targets });
         }
+        let weights = nodes.iter().map(|node| rest_weights(&carried, node)).collect();
         let order = order(&parents);
         let rest = nodes.iter().map(rest).collect();
-        Ok(Self { file, skins: file.skins()?, carried, parents, rest, order })
+        Ok(Self { file, skins: file.skins()?, carried, parents, rest, weights, order })
     }
 
     fn name(&self, node: usize) -> String {
@@ -193,7 +213,7 @@ impl<'a> Stage<'a> {
 
     fn skin_facts(&self) -> IndexMap<String, SkinFacts> {
         let facts = |(index, skin): (usize, &ReadSkin)| {
-            let own = self.carried.iter().filter(|carried| carried.skin == index);
+            let own = self.carried.iter().filter(|carried| carried.skin == Some(index));
             let used =
                 |influences: &ReadInfluences| influences.iter().filter(|(_, weight)| *weight > 0.0).count();
             let most = own.clone().flat_map(|carried| carried.influences.iter().map(used)).max();
@@ -208,16 +228,25 @@ impl<'a> Stage<'a> {
         self.skins.iter().enumerate().map(facts).collect()
     }
 
+    fn played(&self, animation: &ReadAnimation, time: f64) -> Played {
+        let mut weights = self.weights.clone();
+        for channel in animation.channels.iter().filter(|channel| channel.path == Path::Weight) {
+            weights[channel.node] = played(channel, time);
+        }
+        Played { worlds: self.worlds(animation, time), weights }
+    }
+
     /// The matrices of all nodes at a time.
     fn worlds(&self, animation: &ReadAnimation, time: f64) -> Vec<DMat4> {
         let mut local = self.rest.clone();
-        for channel in &animation.channels {
-            let value = played(channel, time);
+        for channel in animation.channels.iter().filter(|channel| channel.path != Path::Weight) {
+            let value = vector(&played(channel, time));
             let place = &mut local[channel.node];
             match channel.path {
                 Path::Translation => place.translation = value.truncate(),
                 Path::Rotation => place.rotation = DQuat::from_vec4(value).normalize(),
                 Path::Scale => place.scale = value.truncate(),
+                Path::Weight => {}
             }
         }
         let mut worlds = vec![DMat4::IDENTITY; local.len()];
@@ -229,20 +258,40 @@ impl<'a> Stage<'a> {
     }
 
     fn pose(&self, animation: &ReadAnimation, time: f64) -> PoseFacts {
-        let worlds = self.worlds(animation, time);
+        let scene = self.played(animation, time);
         let mut told: Vec<usize> = self.skins.iter().flat_map(|skin| skin.joints.iter().copied()).collect();
         told.extend(animation.channels.iter().map(|channel| channel.node));
         told.sort_unstable();
         told.dedup();
-        let nodes = told.iter().map(|node| (self.name(*node), worlds[*node].to_cols_array())).collect();
+        let nodes = told.iter().map(|node| (self.name(*node), scene.worlds[*node].to_cols_array())).collect();
         let some = |carried: &Carried| {
-            let count = carried.influences.len();
-            let step = count.div_ceil(TOLD).max(1);
-            let skinned = self.skinned(carried, &worlds);
-            let posed = |vertex: usize| PosedVertex { vertex, at: skinned(vertex).to_array() };
-            (carried.name.clone(), (0..count).step_by(step).map(posed).collect())
+            let moved = self.moved(carried, &scene);
+            let posed = |vertex: usize| PosedVertex { vertex, at: moved(vertex).to_array() };
+            (carried.name.clone(), self.told(carried).into_iter().map(posed).collect())
         };
-        PoseFacts { time, nodes, vertices: self.carried.iter().map(some).collect() }
+        let weighted = (0..self.rest.len()).filter(|node| !self.weights[*node].is_empty());
+        let weights = weighted.map(|node| (self.name(node), scene.weights[node].clone())).collect();
+        PoseFacts { time, nodes, weights, vertices: self.carried.iter().map(some).collect() }
+    }
+
+    /// The vertices of a mesh that poses tell: some of all, and of those that weights move as many again.
+    fn told(&self, carried: &Carried) -> Vec<usize> {
+        let all: Vec<usize> = (0..self.file.geometries[carried.mesh].positions.len()).collect();
+        let moves = |vertex: &usize| {
+            carried
+                .targets
+                .iter()
+                .any(|target| target.positions.get(*vertex).is_some_and(|way| *way != DVec3::ZERO))
+        };
+        let moving: Vec<usize> = all.iter().copied().filter(moves).collect();
+        let some = |list: &[usize]| {
+            let step = list.len().div_ceil(TOLD).max(1);
+            list.iter().copied().step_by(step).collect::<Vec<_>>()
+        };
+        let mut told = [some(&all), some(&moving)].concat();
+        told.sort_unstable();
+        told.dedup();
+        told
     }
 
     /// How near the points of joints come to their places, frame by frame.
@@ -277,13 +326,18 @@ impl<'a> Stage<'a> {
     }
 
     /// Where the vertices of a mesh are.
-    fn skinned<'s>(&'s self, carried: &'s Carried, worlds: &[DMat4]) -> impl Fn(usize) -> DVec3 + 's {
-        let skin = &self.skins[carried.skin];
-        let maps: Vec<DMat4> =
-            skin.joints.iter().zip(&skin.inverse_bind).map(|(joint, bind)| worlds[*joint] * *bind).collect();
+    fn moved<'s>(&'s self, carried: &'s Carried, scene: &'s Played) -> impl Fn(usize) -> DVec3 + 's {
+        let skin = carried.skin.map(|skin| &self.skins[skin]);
+        let pairs = skin.into_iter().flat_map(|skin| skin.joints.iter().zip(&skin.inverse_bind));
+        let maps: Vec<DMat4> = pairs.map(|(joint, bind)| scene.worlds[*joint] * *bind).collect();
         move |vertex: usize| {
             let place = self.file.geometries[carried.mesh].position(vertex);
-            let place = glam::Vec3::from_array(place).as_dvec3();
+            let states = carried.targets.iter().zip(&scene.weights[carried.node]);
+            let way = |(target, weight): (&ReadTarget, &f64)| target.positions[vertex] * *weight;
+            let place = glam::Vec3::from_array(place).as_dvec3() + states.map(way).sum::<DVec3>();
+            if carried.skin.is_none() {
+                return scene.worlds[carried.node].transform_point3(place);
+            }
             let part = |(joint, weight): &(usize, f64)| maps[*joint].transform_point3(place) * *weight;
             carried.influences[vertex].iter().filter(|(_, weight)| *weight > 0.0).map(part).sum()
         }
@@ -295,18 +349,19 @@ impl<'a> Stage<'a> {
         times.extend((0..=64).map(|k| duration * f64::from(k) / 64.0));
         times.sort_by(f64::total_cmp);
         times.dedup();
-        let vertices: usize = self.carried.iter().map(|carried| carried.influences.len()).sum();
+        let count = |carried: &Carried| self.file.geometries[carried.mesh].positions.len();
+        let vertices: usize = self.carried.iter().map(count).sum();
         let step = (vertices * times.len()).div_ceil(MOST_PLAYED).max(1);
         let mut bounds = Bounds::EMPTY;
         for time in times.iter().step_by(step) {
-            let worlds = self.worlds(animation, *time);
+            let scene = self.played(animation, *time);
             for carried in &self.carried {
-                let skinned = self.skinned(carried, &worlds);
-                bounds = (0..carried.influences.len())
-                    .fold(bounds, |bounds, vertex| bounds.with_point(skinned(vertex)));
+                let moved = self.moved(carried, &scene);
+                bounds = (0..count(carried)).fold(bounds, |bounds, vertex| bounds.with_point(moved(vertex)));
             }
-            for (node, world) in self.file.root.nodes.iter().zip(&worlds) {
-                let Some(mesh) = node.mesh.filter(|_| node.skin.is_none()) else { continue };
+            for (index, (node, world)) in self.file.root.nodes.iter().zip(&scene.worlds).enumerate() {
+                let still = node.skin.is_none() && self.weights[index].is_empty();
+                let Some(mesh) = node.mesh.filter(|_| still) else { continue };
                 let geometry = &self.file.geometries[mesh.value()];
                 let points = (0..geometry.positions.len()).map(|vertex| geometry.position(vertex));
                 let points = points.chain(geometry.lines.positions.iter().copied());
@@ -347,19 +402,30 @@ fn rest(node: &gltf::json::Node) -> Transform {
     }
 }
 
-fn played(channel: &ReadChannel, time: f64) -> DVec4 {
+/// The weights of what a node shows.
+fn rest_weights(carried: &[Carried], node: &gltf::json::Node) -> Vec<f64> {
+    let shown = node.mesh.and_then(|mesh| carried.iter().find(|known| known.mesh == mesh.value()));
+    shown.map_or_else(Vec::new, |known| known.targets.iter().map(|target| target.weight).collect())
+}
+
+fn vector(numbers: &[f64]) -> DVec4 {
+    let part = |axis: usize| numbers.get(axis).copied().unwrap_or(0.0);
+    DVec4::new(part(0), part(1), part(2), part(3))
+}
+
+/// The numbers of a channel at a time.
+fn played(channel: &ReadChannel, time: f64) -> Vec<f64> {
+    let width = channel.values.len() / channel.times.len();
+    let row = |key: usize| &channel.values[key * width..(key + 1) * width];
     let next = channel.times.partition_point(|key| *key <= time);
-    if next == 0 {
-        return channel.values[0];
-    }
-    let key = next - 1;
-    if next == channel.times.len() || channel.stepped {
-        return channel.values[key];
+    let key = next.saturating_sub(1);
+    if next == 0 || next == channel.times.len() || channel.stepped {
+        return row(key).to_vec();
     }
     let share = (time - channel.times[key]) / (channel.times[next] - channel.times[key]);
-    let (from, to) = (channel.values[key], channel.values[next]);
     if channel.path != Path::Rotation {
-        return from + (to - from) * share;
+        return row(key).iter().zip(row(next)).map(|(from, to)| from + (to - from) * share).collect();
     }
-    DVec4::from(slerp(DQuat::from_vec4(from).normalize(), DQuat::from_vec4(to).normalize(), share))
+    let [from, to] = [key, next].map(|key| DQuat::from_vec4(vector(row(key))).normalize());
+    slerp(from, to, share).to_array().to_vec()
 }

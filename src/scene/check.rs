@@ -3,6 +3,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
+mod morph;
 mod motion;
 
 use crate::geometry::mesh::VertexIndex;
@@ -64,6 +65,9 @@ pub enum SceneError {
     /// More than 32-bit indices or 4 GiB can address.
     #[error("shape `{0}` is too large for a glTF file")]
     TooLarge(String),
+    /// A state is not whole.
+    #[error("state `{1}` of shape `{0}` has {2}")]
+    Morph(String, String, &'static str),
     /// Nodes form a cycle.
     #[error("node `{0}` is its own ancestor")]
     Cycle(String),
@@ -89,6 +93,7 @@ pub fn check(scene: &Scene) -> Result<Checked<'_>, SceneError> {
     for geometry in &scene.geometries {
         check_geometry(geometry)?;
         check_grid(scene, geometry)?;
+        morph::check(scene, geometry)?;
     }
     for mesh in &scene.meshes {
         check_use(scene, mesh)?;

@@ -4,9 +4,11 @@
 //! [`Checked`], which every writer demands. Not promised of an unchecked scene: anything.
 
 pub mod check;
+mod morph;
 mod motion;
 
 pub use check::{Checked, SceneError};
+pub use morph::MorphTarget;
 pub use motion::{Animation, Channel, Skin};
 
 pub use crate::model::{AlphaMode, Filter, Image, ImageKind, Material, Texture, Wrap};
@@ -77,6 +79,8 @@ pub struct Geometry {
     pub tangents: Option<Vec<[f32; 4]>>,
     /// For each point of the mesh the joints that carry it, as indices of the skin's joints.
     pub influences: Option<Vec<Influences>>,
+    /// States that weights bring its vertices to.
+    pub targets: Vec<MorphTarget>,
     /// Distance from the exact shape before rounding.
     pub deviation: Deviation,
     /// Distance that was asked for, metres; `None` where a fixed grid or no surface made the mesh.

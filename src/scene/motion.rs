@@ -1,6 +1,6 @@
 //! Skins and motions, as a file holds them.
 
-use glam::{DAffine3, DVec3, DVec4};
+use glam::{DAffine3, DVec3};
 
 use crate::motion::Path;
 
@@ -38,7 +38,7 @@ pub struct Animation {
     pub samples: usize,
 }
 
-/// One part of a node in motion.
+/// One part of a node in motion, or all weights of its mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
     /// The node.
@@ -49,6 +49,7 @@ pub struct Channel {
     pub stepped: bool,
     /// Seconds, increasing.
     pub times: Vec<f64>,
-    /// One value for each time: translations and scales (x, y, z), rotations (x, y, z, w).
-    pub values: Vec<DVec4>,
+    /// For each time as many numbers: translations and scales x, y and z, rotations x, y, z and w, weights one for each
+    /// morph target of the node's mesh.
+    pub values: Vec<f64>,
 }

@@ -103,19 +103,66 @@ impl Glb {
             5125 | 5126 => 4,
             other => panic!("component type {other}"),
         };
-        let view = count(&accessor["bufferView"]);
-        let offset = count(&accessor["byteOffset"]);
-        assert_eq!((count(&self.list("bufferViews")[view]["byteOffset"]) + offset) % width, 0, "alignment");
+        let kind = count(&accessor["componentType"]);
         let rows = count(&accessor["count"]);
         assert!(rows > 0, "accessor {index} is empty");
+        let mut all = match accessor.get("bufferView") {
+            Some(_) => self.rows(accessor, (kind, width), (rows, columns)),
+            None => vec![vec![0.0; columns]; rows],
+        };
+        if let Some(sparse) = accessor.get("sparse") {
+            let (indices, changed) = (&sparse["indices"], count(&sparse["count"]));
+            let short = count(&indices["componentType"]);
+            let places = self.rows(indices, (short, if short == 5123 { 2 } else { 4 }), (changed, 1));
+            let places: Vec<usize> = places.iter().map(|row| whole(row[0])).collect();
+            assert!(places.windows(2).all(|pair| pair[0] < pair[1]), "accessor {index}: indices increase");
+            for (place, row) in
+                places.iter().zip(self.rows(&sparse["values"], (kind, width), (changed, columns)))
+            {
+                all[*place] = row;
+            }
+        }
+        all
+    }
+
+    /// Rows of numbers in a view, from an offset on.
+    fn rows(
+        &self,
+        place: &Value,
+        (kind, width): (usize, usize),
+        (rows, columns): (usize, usize),
+    ) -> Vec<Vec<f64>> {
+        let (view, offset) = (count(&place["bufferView"]), count(&place["byteOffset"]));
+        assert_eq!((count(&self.list("bufferViews")[view]["byteOffset"]) + offset) % width, 0, "alignment");
         let bytes = &self.view(view)[offset..offset + rows * columns * width];
-        let read = |bytes: &[u8]| match count(&accessor["componentType"]) {
+        let read = |bytes: &[u8]| match kind {
             5121 => f64::from(bytes[0]),
             5123 => f64::from(u16::from_le_bytes(bytes.try_into().expect("two bytes"))),
             5125 => f64::from(u32::from_le_bytes(bytes.try_into().expect("four bytes"))),
             _ => f64::from(f32::from_le_bytes(bytes.try_into().expect("four bytes"))),
         };
         bytes.chunks(columns * width).map(|row| row.chunks(width).map(read).collect()).collect()
+    }
+
+    /// The morph targets of a mesh: for each the places of all vertices and their normals at weight 1.
+    pub(crate) fn targets(&self, index: usize) -> Vec<[Vec<[f64; 3]>; 2]> {
+        let (surfaces, _) = self.primitives(index);
+        let mesh = self.mesh(index);
+        let targets = surfaces[0]["targets"].as_array().map_or(&[][..], Vec::as_slice);
+        assert!(
+            surfaces.iter().all(
+                |other| other["targets"].as_array().map_or(&[][..], Vec::as_slice).len() == targets.len()
+            )
+        );
+        let moved = |base: &[[f64; 3]], way: &Value| {
+            let ways = self.accessor(count(way));
+            assert_eq!(ways.len(), base.len());
+            base.iter().zip(ways).map(|(from, way)| [0, 1, 2].map(|axis| from[axis] + way[axis])).collect()
+        };
+        let of = |target: &Value| {
+            [moved(&mesh.positions, &target["POSITION"]), moved(&mesh.normals, &target["NORMAL"])]
+        };
+        targets.iter().map(of).collect()
     }
 
     fn vectors<const N: usize>(&self, primitive: &Value, name: &str) -> Option<Vec<[f64; N]>> {

@@ -44,6 +44,15 @@ impl Bounds {
         if self.is_empty() { 0.0 } else { self.min.distance(self.max) }
     }
 
+    /// Its eight corners; bit k of a corner's number is the far end of axis k.
+    #[must_use]
+    pub fn corners(&self) -> [DVec3; 8] {
+        core::array::from_fn(|corner| {
+            let pick = |axis: usize| if corner >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] };
+            DVec3::new(pick(0), pick(1), pick(2))
+        })
+    }
+
     /// Midpoint.
     #[must_use]
     pub fn center(&self) -> DVec3 {

@@ -411,6 +411,13 @@ codes! {
     CoarseGrid = "K0987";
     /// a variant and a profile would be one file
     SameFile = "K0988";
+
+    /// a state of a shape has another topology
+    MorphTopology = "K0989";
+    /// a shape that cannot morph so
+    BadMorph = "K0990";
+    /// weights of one mesh that step and run at once
+    MixedWeights = "K0991";
 }
 
 impl serde::Serialize for Code {

@@ -510,4 +510,13 @@ examples! {
     SameFile: "The file of a variant is called NAME.VARIANT.glb, that of a profile NAME.PROFILE.glb. A variant with the name of a profile would be written over it.",
         "[output]\nprofiles = [\"core\", \"web\"]\n[shape.a.box]\nsize = [1, 1, 1]\n[variant.web.shape.a.box]\nsize = [2, 1, 1]" =>
         "[output]\nprofiles = [\"core\", \"web\"]\n[shape.a.box]\nsize = [1, 1, 1]\n[variant.wide.shape.a.box]\nsize = [2, 1, 1]";
+    MorphTopology: "A state of a shape moves its vertices, so it has the same triangles. Surfaces over parameters (revolve, extrude, sweep, patches) correspond piece by piece; polygons and cages where they are the same over other points; all else only where it happens to be cut alike.",
+        "[parameters]\nsides = 4\n[shape.a.array]\nof = { box = { size = [1, 1, 1] } }\ncount = \"= sides\"\noffset = [2, 0, 0]\n[morph.a.more]\nwith = { sides = 5 }" =>
+        "[parameters]\nhigh = 1\n[shape.a.array]\nof = { box = { size = [1, \"= high\", 1] } }\ncount = 4\noffset = [2, 0, 0]\n[morph.a.higher]\nwith = { high = 2 }";
+    BadMorph: "A shape that morphs is shown by a node, as itself and made of triangles; each of its states can be made and is another shape than it.",
+        "[shape.a.box]\nsize = [1, 1, 1]\n[morph.a.same]\nshape = \"a\"" =>
+        "[shape.a.box]\nsize = [1, 1, 1]\n[shape.b.box]\nsize = [1, 2, 1]\n[morph.a.high]\nshape = \"b\"";
+    MixedWeights: "All weights of a mesh are one track of a file, which jumps from key to key or runs straight. In a clip the weights of a node do one or the other.",
+        "[shape.a.box]\nsize = [1, 1, 1]\n[shape.b.box]\nsize = [1, 2, 1]\n[shape.c.box]\nsize = [2, 1, 1]\n[morph.a.high]\nshape = \"b\"\n[morph.a.wide]\nshape = \"c\"\n[[clip.c.track]]\nmorph = \"a.high\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 1 }]\n[[clip.c.track]]\nmorph = \"a.wide\"\nbetween = \"step\"\nkeys = [{ at = 0, value = 0 }, { at = 0.5, value = 1 }]" =>
+        "[shape.a.box]\nsize = [1, 1, 1]\n[shape.b.box]\nsize = [1, 2, 1]\n[shape.c.box]\nsize = [2, 1, 1]\n[morph.a.high]\nshape = \"b\"\n[morph.a.wide]\nshape = \"c\"\n[[clip.c.track]]\nmorph = \"a.high\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 1 }]\n[[clip.c.track]]\nmorph = \"a.wide\"\nkeys = [{ at = 0.499, value = 0 }, { at = 0.5, value = 1 }]";
 }

@@ -1,15 +1,25 @@
 //! Expressions put into the value tree.
 
+use indexmap::IndexMap;
+
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::document::parameters::{FormulaOrValue, Parameters};
 use crate::language::expression::{Computed, FUNCTIONS, body};
 use crate::language::source::{SourceMap, Span};
-use crate::language::spec::{backtick, check_name};
+use crate::language::spec::{ParameterValue, Sp, backtick, check_name};
 use crate::language::suggest::closest;
 use crate::language::value::{Data, Entry, Table, Value};
 
 /// The most items that the generators of a document make together.
 const MOST_ITEMS: u64 = 1_000_000;
+
+/// What is said of parameters beside the document's own values.
+pub(crate) struct Given<'g> {
+    /// Names and texts, as the command line writes them.
+    pub(crate) overrides: &'g [(String, String)],
+    /// Names and values, as a state of the document has them.
+    pub(crate) with: &'g IndexMap<String, Sp<ParameterValue>>,
+}
 
 /// Names that a parameter cannot have.
 const WORDS: [&str; 7] = ["and", "or", "not", "true", "false", "pi", "i"];
@@ -19,7 +29,7 @@ const WORDS: [&str; 7] = ["and", "or", "not", "true", "false", "pi", "i"];
 pub(crate) fn evaluate(
     table: &mut Table,
     variants: &Table,
-    overrides: &[(String, String)],
+    given: &Given<'_>,
     sources: &SourceMap,
 ) -> Vec<Diagnostic> {
     let mut found = Vec::new();
@@ -30,8 +40,11 @@ pub(crate) fn evaluate(
         _ => None,
     });
     let mut parameters = Parameters::new(&written, steps, sources);
-    for (name, text) in overrides {
+    for (name, text) in given.overrides {
         set(name, text, &written, &mut parameters);
+    }
+    for (name, value) in given.with {
+        set_value(name, value, &written, &mut parameters);
     }
     for name in written.entries.keys() {
         parameters.value(name);
@@ -43,7 +56,7 @@ pub(crate) fn evaluate(
     found.append(&mut parameters.found);
     if found.is_empty() {
         // An expression that could not be read uses its parameters all the same.
-        found.extend(unused(&written, &parameters, variants, overrides, sources));
+        found.extend(unused(&written, &parameters, variants, given.overrides, sources));
     }
     found
 }
@@ -104,6 +117,30 @@ fn set(name: &str, text: &str, written: &Table, parameters: &mut Parameters<'_>)
             parameters.found.push(report.note(format!("parameter `{name}` is {}", default.kind())));
         }
     }
+}
+
+/// Sets a parameter to a value of a state, if it exists and the value is of its type.
+fn set_value(name: &str, value: &Sp<ParameterValue>, written: &Table, parameters: &mut Parameters<'_>) {
+    if written.get(name).is_none() {
+        let report =
+            Diagnostic::error(Code::BadOverride, format!("there is no parameter {}", backtick(name)))
+                .at(value.span, "not defined in [parameters]");
+        let near = closest(name, written.entries.keys().map(String::as_str));
+        parameters.found.push(match near {
+            Some(near) => report.help(format!("did you mean `{near}`?")),
+            None => report,
+        });
+        return;
+    }
+    let Some(default) = Parameters::new(written, None, parameters.sources()).value(name) else { return };
+    let ParameterValue(given) = &value.value;
+    if given.kind() == default.kind() {
+        parameters.set(name, given.clone());
+        return;
+    }
+    let message = format!("parameter `{name}` is {}, and here it is {}", default.kind(), given.kind());
+    let report = Diagnostic::error(Code::BadOverride, message);
+    parameters.found.push(report.at(value.span, format!("expected {}", default.kind())));
 }
 
 fn plain(text: &str) -> String {

@@ -7,12 +7,14 @@ mod parameters;
 
 use std::sync::Arc;
 
+use indexmap::IndexMap;
+
 use crate::language::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
-use crate::language::document::evaluate::evaluate;
+use crate::language::document::evaluate::{Given, evaluate};
 use crate::language::document::overlay::overlay;
 use crate::language::source::Span;
 use crate::language::source::{Files, SourceMap};
-use crate::language::spec::{Spec, read_spec};
+use crate::language::spec::{ParameterValue, Sp, Spec, read_spec};
 use crate::language::suggest::closest;
 use crate::language::value::{Table, quote};
 
@@ -97,7 +99,26 @@ impl Document {
         }
     }
 
+    /// The document as [`Document::spec`] reads it with other values of some parameters: a state of it.
+    ///
+    /// # Errors
+    /// Everything that is wrong with these values, or with the document that they make.
+    pub fn state(
+        &self,
+        variant: Option<&str>,
+        overrides: &[(String, String)],
+        with: &IndexMap<String, Sp<ParameterValue>>,
+    ) -> Result<Spec, Diagnostics> {
+        let (spec, found) = self.read_with(variant, &Given { overrides, with });
+        let failed = found.iter().any(|one| one.severity == Severity::Error);
+        spec.filter(|_| !failed).ok_or_else(|| self.diagnostics(found))
+    }
+
     fn read(&self, variant: Option<&str>, overrides: &[(String, String)]) -> (Option<Spec>, Vec<Diagnostic>) {
+        self.read_with(variant, &Given { overrides, with: &IndexMap::new() })
+    }
+
+    fn read_with(&self, variant: Option<&str>, given: &Given<'_>) -> (Option<Spec>, Vec<Diagnostic>) {
         let mut table = self.base.clone();
         if let Some(name) = variant {
             match self.variants.get(name) {
@@ -105,7 +126,7 @@ impl Document {
                 None => return (None, vec![self.unknown_variant(name)]),
             }
         }
-        let mut found = evaluate(&mut table, &self.variants, overrides, &self.sources);
+        let mut found = evaluate(&mut table, &self.variants, given, &self.sources);
         let (spec, more) = read_spec(&table, &self.sources);
         found.extend(more);
         (spec, found)

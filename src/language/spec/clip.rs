@@ -10,6 +10,7 @@ use crate::language::spec::construct::{choices, table};
 use crate::language::spec::formula::Formula;
 use crate::language::spec::import::{FilePath, Up};
 use crate::language::spec::kind::choice;
+use crate::language::spec::morph::MorphName;
 use crate::language::spec::point::read_numbers;
 use crate::language::spec::reach::Reach;
 use crate::language::spec::reader::{Read, Reader};
@@ -76,7 +77,7 @@ choices! {
 
 table! {
     /// The motion of one part of a node or joint, on top of its rest: translations are added (for joints in the rest frame),
-    /// rotations are applied before the rest's own, scales are multiplied.
+    /// rotations are applied before the rest's own, scales are multiplied. Or the weight of a state of a shape.
     "track" pub ClipTrack {
         /// The node.
         node: Option<Sp<NodeName>>;
@@ -84,11 +85,13 @@ table! {
         joint: Option<Sp<String>>;
         /// The chain all of whose joints move by one `formula`; in it u runs from 0 at the first joint to 1 at the last.
         chain: Option<Sp<String>>;
-        /// The part that moves. A track `along` a curve needs none.
+        /// The state of a shape whose weight moves, `"SHAPE.TARGET"`: at every node that shows the shape, or at `node` alone.
+        morph: Option<Sp<MorphName>>;
+        /// The part that moves. A track `along` a curve needs none, nor has a weight one.
         path: Option<Sp<MotionPath>>;
         /// Values at times, each `{ at = seconds, value = ... }`. Translations: three numbers in the document's unit, or one
         /// with `axis`. Rotations: degrees with `axis`; three angles in degrees; or a quaternion `[x, y, z, w]`. Scales: a
-        /// number or three. With `along`: the share of the curve's length.
+        /// number or three. Weights: a number. With `along`: the share of the curve's length.
         keys: Vec<MotionKey> = Vec::new();
         /// How values go from key to key.
         between: Sp<Between> = Between::Linear;
@@ -283,7 +286,8 @@ impl Read for Direction {
 impl ClipTrack {
     fn check(&self, table: Span, reader: &mut Reader<'_>) -> bool {
         let targets = [
-            self.node.as_ref().map(|node| ("node", node.span)),
+            self.node.as_ref().filter(|_| self.morph.is_none()).map(|node| ("node", node.span)),
+            self.morph.as_ref().map(|morph| ("morph", morph.span)),
             self.joint.as_ref().map(|joint| ("joint", joint.span)),
             self.chain.as_ref().map(|chain| ("chain", chain.span)),
         ];
@@ -293,10 +297,26 @@ impl ClipTrack {
             self.curve.as_ref().map(|curve| ("curve", curve.span())),
             self.speed.first().map(|key| ("speed", key.at.span)),
         ];
-        let targeted = one_of(&targets, ("what moves", "`node`, `joint` or `chain`"), (table, false), reader);
+        let targeted =
+            one_of(&targets, ("what moves", "`node`, `joint`, `chain` or `morph`"), (table, false), reader);
         let free = self.along.is_some();
         let ruled = one_of(&laws, ("how it moves", "`keys`, `formula` or `curve`"), (table, free), reader);
+        let whole = [
+            self.path.as_ref().map(|path| ("path", path.span)),
+            self.along.as_ref().map(|along| ("along", along.span())),
+            self.axis.as_ref().map(|axis| ("axis", axis.span)),
+            self.speed.first().map(|key| ("speed", key.at.span)),
+        ];
+        if let (Some(morph), Some((field, span))) = (&self.morph, whole.into_iter().flatten().next()) {
+            let message = format!("a weight is one number and has no `{field}`");
+            let report = Diagnostic::error(Code::Conflict, message)
+                .at(span, "cannot stand beside `morph`")
+                .also(morph.span, "the weight");
+            reader.report(report);
+            return false;
+        }
         let report = match (&self.along, &self.path) {
+            (None, None) if self.morph.is_some() => return targeted && ruled,
             (None, None) => Diagnostic::error(Code::MissingField, "missing field `path` of track")
                 .at(table, "needs `path`"),
             (Some(along), Some(path)) if path.value != MotionPath::Translation => {

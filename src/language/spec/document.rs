@@ -13,6 +13,7 @@ use crate::language::spec::import::Up;
 use crate::language::spec::limit::Limits;
 use crate::language::spec::map::MapDefinition;
 use crate::language::spec::material::Material;
+use crate::language::spec::morph::Morphs;
 use crate::language::spec::node::Node;
 use crate::language::spec::reference::{CurveReference, MapReference, ShapeReference};
 use crate::language::spec::shape::ShapeDefinition;
@@ -53,6 +54,8 @@ pub struct Spec {
     pub skeletons: IndexMap<String, Definition<Skeleton>>,
     /// `[skin.NAME]`, in the order of the text.
     pub skins: IndexMap<String, Definition<Skin>>,
+    /// `[morph.SHAPE]`, in the order of the text.
+    pub morphs: IndexMap<String, Definition<Morphs>>,
     /// `[clip.NAME]`, in the order of the text.
     pub clips: IndexMap<String, Definition<Clip>>,
     /// The shapes that a document without nodes shows: those that no other definition uses.

@@ -30,6 +30,7 @@ mod loft;
 mod map;
 mod material;
 mod mesh;
+mod morph;
 mod name;
 mod node;
 mod nurbs_surface;
@@ -110,6 +111,7 @@ pub use map::{
 };
 pub use material::{Alpha, Color, Filter, Material, Texture, Wrap};
 pub use mesh::Mesh;
+pub use morph::{Morph, MorphName, Morphs, ParameterValue};
 pub use node::Node;
 pub use nurbs_surface::{BSplineSurface, NurbsSurface};
 pub use operation::{Chamfer, Fillet, Offset, OffsetCorner, ProfileSet};

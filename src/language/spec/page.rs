@@ -161,7 +161,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
     ("Nodes", "A document without nodes shows each shape that no other definition uses.", &["node"]),
     (
         "Motion",
-        "A skeleton is written `[skeleton.NAME.joint.JOINT]`, a skin `[skin.NAME]`, a motion `[clip.NAME]` with `[[clip.NAME.track]]`.",
+        "A skeleton is written `[skeleton.NAME.joint.JOINT]`, a skin `[skin.NAME]`, a state of a shape `[morph.SHAPE.TARGET]`, a motion `[clip.NAME]` with `[[clip.NAME.track]]`.",
         &[
             "skeleton",
             "joint",
@@ -171,6 +171,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
             "socket",
             "skin",
             "skin weight",
+            "morph",
             "clip",
             "track",
             "key",

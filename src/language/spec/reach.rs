@@ -71,6 +71,7 @@ impl Reach {
     #[must_use]
     pub fn track(&self) -> ClipTrack {
         ClipTrack {
+            morph: None,
             keys: self.keys.clone(),
             between: self.between,
             formula: self.formula.clone(),
@@ -120,6 +121,7 @@ fn still(path: MotionPath) -> ClipTrack {
         node: None,
         joint: None,
         chain: None,
+        morph: None,
         path: Some(path.into()),
         keys: Vec::new(),
         between: Between::Linear.into(),

@@ -32,13 +32,15 @@ pub enum Family {
     Skeleton,
     /// `[skin.NAME]`.
     Skin,
+    /// `[morph.SHAPE]`.
+    Morph,
     /// `[clip.NAME]`.
     Clip,
 }
 
 impl Family {
     /// All families.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Curve,
         Self::Map,
         Self::Field,
@@ -47,6 +49,7 @@ impl Family {
         Self::Node,
         Self::Skeleton,
         Self::Skin,
+        Self::Morph,
         Self::Clip,
     ];
 
@@ -62,6 +65,7 @@ impl Family {
             Self::Node => "node",
             Self::Skeleton => "skeleton",
             Self::Skin => "skin",
+            Self::Morph => "morph",
             Self::Clip => "clip",
         }
     }

@@ -55,16 +55,33 @@ pub(crate) fn resolve(names: &Names, deepest: u32, reader: &mut Reader<'_>) -> V
     for family in Family::ALL {
         Graph::of(family, names, &uses).check(deepest, reader);
     }
-    // A skin moves a shape, which is shown all the same.
-    let skins = |one: &Use| one.user.as_ref().is_some_and(|(family, _)| *family == Family::Skin);
-    let shapes = uses.iter().filter(|one| one.family == Family::Shape && !skins(one));
-    let used: BTreeSet<&str> = shapes.map(|one| one.name.as_str()).collect();
+    let shapes: Vec<&Use> = uses.iter().filter(|one| one.family == Family::Shape).collect();
+    let by = |one: &Use, family: Family| {
+        one.user.as_ref().filter(|user| user.0 == family).map(|user| user.1.clone())
+    };
+    // A skin or a morph moves a shape, which is shown all the same.
+    let moves =
+        |one: &Use| by(one, Family::Skin).is_some() || by(one, Family::Morph).as_ref() == Some(&one.name);
+    let states: BTreeSet<&str> =
+        (shapes.iter().filter(|one| by(one, Family::Morph).is_some() && !moves(one)))
+            .map(|one| one.name.as_str())
+            .collect();
+    let moved: BTreeSet<&str> =
+        names.families.get(&Family::Morph).into_iter().flatten().map(|(name, _)| name.as_str()).collect();
+    // So is a shape whose states are made of it.
+    let of_state = |one: &Use| {
+        moved.contains(one.name.as_str())
+            && by(one, Family::Shape).is_some_and(|user| states.contains(user.as_str()))
+    };
+    let using = shapes.iter().filter(|one| !moves(one) && !of_state(one));
+    let used: BTreeSet<&str> = using.map(|one| one.name.as_str()).collect();
     names.list(Family::Shape).filter(|name| !used.contains(name)).map(str::to_owned).collect()
 }
 
 fn unknown(one: &Use, names: &Names) -> Diagnostic {
-    let other =
-        Family::ALL.into_iter().find_map(|family| names.find(family, &one.name).map(|span| (family, span)));
+    // Morphs are called as their shapes.
+    let mut others = Family::ALL.into_iter().filter(|family| *family != Family::Morph);
+    let other = others.find_map(|family| names.find(family, &one.name).map(|span| (family, span)));
     if let Some((family, span)) = other {
         let message = format!("{} is a {}, not a {}", backtick(&one.name), family.text(), one.family.text());
         return Diagnostic::error(Code::WrongFamily, message)

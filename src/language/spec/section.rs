@@ -13,6 +13,7 @@ use crate::language::spec::import::Up;
 use crate::language::spec::kind::Kinds;
 use crate::language::spec::limit::{LimitFields, Limits};
 use crate::language::spec::map::Map;
+use crate::language::spec::morph::{self, Morphs};
 use crate::language::spec::name::check_name;
 use crate::language::spec::reader::{Read, Reader, backtick, unknown_field};
 use crate::language::spec::reference::Family;
@@ -23,7 +24,7 @@ use crate::language::spec::spanned::Sp;
 use crate::language::value::{Data, Entry, Table};
 
 /// Everything that may stand at the top of a document, with what it means.
-pub(crate) const SECTIONS: [(&str, &str); 20] = [
+pub(crate) const SECTIONS: [(&str, &str); 21] = [
     ("unit", "The unit of every length; metres when it is not written."),
     ("up", "The axis that points up; y when it is not written."),
     ("tolerance", "How far meshes may lie from the true surfaces, in the document's unit."),
@@ -40,6 +41,7 @@ pub(crate) const SECTIONS: [(&str, &str); 20] = [
     ("node", "Nodes, as `[node.NAME]`. Without any, each shape that no other definition uses is shown."),
     ("skeleton", "Skeletons, as `[skeleton.NAME.joint.JOINT]`."),
     ("skin", "Shapes that joints carry, as `[skin.NAME]`."),
+    ("morph", "States of shapes, as `[morph.SHAPE.TARGET]`."),
     ("clip", "Motions, as `[clip.NAME]` and `[[clip.NAME.track]]`."),
     (
         "variant",
@@ -81,6 +83,7 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
     let nodes = family(Family::Node, &[], table, &mut reader);
     let skeletons = family(Family::Skeleton, &[], table, &mut reader);
     let skins = family(Family::Skin, &[], table, &mut reader);
+    let morphs = morphs(table, &mut reader);
     let clips = family(Family::Clip, &[], table, &mut reader);
     let asserts = table.get("assert").map(|value| read_assertions(value, &mut reader)).unwrap_or_default();
     let roots = resolve(&Names::of(table), limits.recursion, &mut reader);
@@ -101,6 +104,7 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
         nodes,
         skeletons,
         skins,
+        morphs,
         clips,
         roots,
         asserts,
@@ -109,6 +113,18 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
     let found = reader.diagnostics;
     let failed = found.iter().any(|one| one.severity == Severity::Error);
     ((!failed).then_some(spec), found)
+}
+
+/// The states of shapes; each of their names is that of a shape, which is shown all the same.
+fn morphs(table: &Table, reader: &mut Reader<'_>) -> IndexMap<String, Definition<Morphs>> {
+    let morphs: IndexMap<String, Definition<Morphs>> = family(Family::Morph, &[], table, reader);
+    for (name, definition) in &morphs {
+        reader.user = Some((Family::Morph, name.clone()));
+        reader.uses_inside(Family::Shape, name, definition.name.span, true);
+        reader.user = None;
+        morph::check_names(&definition.value, reader);
+    }
+    morphs
 }
 
 fn word<T: Read>(table: &Table, name: &str, default: T, reader: &mut Reader<'_>) -> T {

@@ -12,6 +12,7 @@ use crate::language::spec::import::Up;
 use crate::language::spec::limit::LimitFields;
 use crate::language::spec::map::MapDefinition;
 use crate::language::spec::material::Material;
+use crate::language::spec::morph::Morphs;
 use crate::language::spec::node::Node;
 use crate::language::spec::reader::Read;
 use crate::language::spec::schema::{ORDER, Schemas};
@@ -85,6 +86,7 @@ fn section(name: &str, schemas: &mut Schemas) -> Json {
         "node" => named(Node::schema(schemas)),
         "skeleton" => named(Skeleton::schema(schemas)),
         "skin" => named(Skin::schema(schemas)),
+        "morph" => named(Morphs::schema(schemas)),
         "clip" => named(Clip::schema(schemas)),
         "assert" => assertion::schema(schemas),
         "limits" => LimitFields::schema(schemas),

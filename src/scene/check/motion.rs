@@ -64,11 +64,28 @@ fn check_animation(scene: &Scene, animation: &Animation) -> Result<(), &'static 
     animation.channels.iter().try_for_each(|channel| check_channel(scene, channel))
 }
 
+/// How many numbers a channel has for each time.
+fn width(scene: &Scene, channel: &Channel) -> Result<usize, &'static str> {
+    Ok(match channel.path {
+        Path::Translation | Path::Scale => 3,
+        Path::Rotation => 4,
+        Path::Weight => {
+            let mesh = scene.nodes[channel.node].mesh.map(|mesh| scene.meshes[mesh].geometry);
+            let targets = mesh.map_or(0, |geometry| scene.geometries[geometry].targets.len());
+            if targets == 0 {
+                return Err("weights of a node without morph targets");
+            }
+            targets
+        }
+    })
+}
+
 fn check_channel(scene: &Scene, channel: &Channel) -> Result<(), &'static str> {
     if channel.node >= scene.nodes.len() {
         return Err("a node that does not exist");
     }
-    if channel.times.is_empty() || channel.times.len() != channel.values.len() {
+    let width = width(scene, channel)?;
+    if channel.times.is_empty() || channel.times.len() * width != channel.values.len() {
         return Err("another number of values than times");
     }
     // They are written in single precision, where they must still increase.
@@ -77,11 +94,11 @@ fn check_channel(scene: &Scene, channel: &Channel) -> Result<(), &'static str> {
         return Err("times that do not increase from 0");
     }
     let limit = f64::from(f32::MAX);
-    if !channel.values.iter().all(|value| value.abs().max_element() <= limit && !value.is_nan()) {
+    if !channel.values.iter().all(|value| value.abs() <= limit) {
         return Err("a value that is not finite");
     }
-    let unit = |value: &glam::DVec4| (value.length_squared() - 1.0).abs() < 1e-5;
-    if channel.path == Path::Rotation && !channel.values.iter().all(unit) {
+    let unit = |value: &[f64]| (value.iter().map(|part| part * part).sum::<f64>() - 1.0).abs() < 1e-5;
+    if channel.path == Path::Rotation && !channel.values.chunks(width).all(unit) {
         return Err("a rotation that is not of unit length");
     }
     Ok(())
