@@ -1,5 +1,8 @@
 //! The pipeline, one line a stage.
 
+mod assertion;
+mod file;
+mod lod;
 mod motion;
 mod notice;
 mod origin;
@@ -7,6 +10,7 @@ mod solid;
 mod state;
 mod subdivide;
 
+use file::{file_name, same_file};
 use notice::noticed;
 pub use origin::Origins;
 
@@ -18,11 +22,11 @@ use crate::gltf::Profile;
 use crate::language::Document;
 use crate::language::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::language::source::{Files, Span};
-use crate::language::spec::{Assertion, Demand, Expected, OutputProfile, Spec};
+use crate::language::spec::{Assertion, OutputProfile, Spec};
 use crate::model::{Model, ShapeHandle};
 use crate::optimize::{Order, Rounding};
 use crate::realize::{self, RealizeError, Realized};
-use crate::report::{About, Check, Report};
+use crate::report::{About, Report};
 use crate::scene::SceneError;
 use crate::{gltf, optimize, report, scene};
 
@@ -58,6 +62,8 @@ pub struct Compiled {
     pub file: String,
     /// For whom it is.
     pub profile: Profile,
+    /// The level of detail that it shows, 0 for the finest.
+    pub level: usize,
     /// What is known of it.
     pub report: Option<Report>,
     /// Where its triangles are defined, when that was asked for.
@@ -79,8 +85,8 @@ pub fn compile(document: &Document, files: &dyn Files, options: &Options) -> Res
     Ok(first.expect("a document has at least one profile"))
 }
 
-/// Compiles one asset of a document for each of its profiles; at least one. Warnings stand with the first file that
-/// they are true of. Surfaces are cut into triangles once.
+/// Compiles one asset of a document for each of its profiles, and for each level of detail where these stand in files of their
+/// own; at least one. Warnings stand with the first file that they are true of. Surfaces are cut into triangles once.
 ///
 /// # Errors
 /// Everything that is wrong with the document, or the assertions that do not hold.
@@ -94,7 +100,7 @@ pub fn compile_profiles(
     let built = state::model(document, &spec, files, options)?;
     warnings.extend(built.warnings.iter().cloned());
     let profiles = profiles(&spec, options);
-    if let Some(same) = same_file(document, &profiles) {
+    if let Some(same) = same_file(document, &spec, &profiles) {
         return Err(fail(vec![same]));
     }
     let made = Made { document, spec: &spec, built: &built, options };
@@ -117,20 +123,9 @@ pub fn compile_profiles(
         if profiles[place + 1..].iter().any(|other| other.is_quantized() == profile.is_quantized()) {
             *kept = Some(surfaces.clone());
         }
-        all.push(made.file(surfaces, *profile, std::mem::take(&mut warnings)).map_err(fail)?);
+        all.extend(made.files(surfaces, *profile, std::mem::take(&mut warnings)).map_err(fail)?);
     }
     Ok(all)
-}
-
-/// A variant and a profile whose files would have one name.
-fn same_file(document: &Document, profiles: &[Profile]) -> Option<Diagnostic> {
-    let variants = document.variants();
-    let same = profiles.iter().find(|profile| {
-        **profile != Profile::Core && variants.iter().any(|variant| variant == profile.name())
-    })?;
-    let message =
-        format!("the variant `{0}` and the profile `{0}` would be written to one file", same.name());
-    Some(Diagnostic::error(Code::SameFile, message).at(Span::NONE, "").help("give the variant another name"))
 }
 
 /// For whom an asset is, each once.
@@ -177,6 +172,12 @@ impl Made<'_> {
     /// The surfaces for a profile, with what there is to say of them. Where rounding takes a part of the tolerance, they are
     /// kept within the rest of it: an eighth goes to rounding, and more where the grid is coarser.
     fn surfaces(&self, profile: Profile) -> Result<(Surfaces, Vec<Diagnostic>), Vec<Diagnostic>> {
+        let (mut surfaces, mut found) = self.finest(profile)?;
+        found.extend(lod::add(self, &mut surfaces)?);
+        Ok((surfaces, found))
+    }
+
+    fn finest(&self, profile: Profile) -> Result<(Surfaces, Vec<Diagnostic>), Vec<Diagnostic>> {
         if !profile.is_quantized() {
             return self.surfaces_within(0.0);
         }
@@ -192,7 +193,8 @@ impl Made<'_> {
     fn surfaces_within(&self, share: f64) -> Result<(Surfaces, Vec<Diagnostic>), Vec<Diagnostic>> {
         let built = self.built;
         let coarser = 1.0 - share;
-        let realized = realize::scene(&built.model, &realize::Options { coarser });
+        let realized =
+            realize::scene(&built.model, &realize::Options { coarser, ..realize::Options::default() });
         let mut realized = realized.map_err(|errors| refusals(built, errors))?;
         for geometry in &mut realized.scene.geometries {
             geometry.tolerance = geometry.tolerance.map(|tolerance| tolerance / coarser);
@@ -200,7 +202,7 @@ impl Made<'_> {
                 target.tolerance = target.tolerance.map(|tolerance| tolerance / coarser);
             }
         }
-        let Realized { scene, shapes, loose, notes } = &realized;
+        let Realized { scene, shapes, loose, notes, .. } = &realized;
         let mut found: Vec<Diagnostic> =
             notes.iter().map(|(shape, note)| noticed(built, *shape, note)).collect();
         found.extend(loose.iter().map(|one| motion::loose(built, one)));
@@ -209,26 +211,42 @@ impl Made<'_> {
         Ok((Surfaces { realized, share }, found))
     }
 
-    /// The file of a profile, with these warnings and what there is to say of it alone.
-    fn file(
+    /// The files of a profile, the first with these warnings and what there is to say of all.
+    fn files(
         &self,
         surfaces: Surfaces,
         profile: Profile,
         mut warnings: Vec<Diagnostic>,
-    ) -> Result<Compiled, Vec<Diagnostic>> {
-        let Self { built, options, .. } = *self;
-        let Surfaces { realized: Realized { mut scene, shapes, .. }, share } = surfaces;
+    ) -> Result<Vec<Compiled>, Vec<Diagnostic>> {
+        let Self { built, spec, .. } = *self;
+        let Surfaces { realized: Realized { mut scene, mut shapes, .. }, share } = surfaces;
         let (rounding, order) = match profile {
             Profile::Core => (Rounding::Single, Order::Drawing),
             Profile::Quantized => (Rounding::Fine(share), Order::Drawing),
             Profile::Web => (Rounding::Coarse(share), Order::Packing),
         };
         if let Err(coarse) = optimize::run(&mut scene, rounding, order) {
-            warnings.push(too_coarse(profile, &coarse, self.spec));
+            warnings.push(too_coarse(profile, &coarse, spec));
         }
         realize::normal_maps(&built.model, &mut scene, &shapes).map_err(|errors| refusals(built, errors))?;
+        lod::settle(&mut scene, &mut shapes);
+        let scenes = lod::files(scene, spec.lod.as_ref().map(|lod| &lod.value));
+        let file =
+            |(level, scene)| self.file(scene, &shapes, (profile, level), std::mem::take(&mut warnings));
+        scenes.into_iter().enumerate().map(file).collect()
+    }
+
+    /// One file, with these warnings and what there is to say of it alone.
+    fn file(
+        &self,
+        scene: scene::Scene,
+        shapes: &[ShapeHandle],
+        (profile, level): (Profile, usize),
+        mut warnings: Vec<Diagnostic>,
+    ) -> Result<Compiled, Vec<Diagnostic>> {
+        let Self { built, options, .. } = *self;
         let checked = scene::check::check(&scene).map_err(|error| vec![unwritable(&error, built)])?;
-        let file = file_name(options, profile);
+        let file = file_name(options, profile, level);
         let written = gltf::write(checked, profile, options.measure || options.origins || options.deviations);
         let meshes: Vec<usize> = scene.meshes.iter().map(|mesh| mesh.geometry).collect();
         // From here on the bytes speak for themselves; the scene's memory is needed no more.
@@ -246,19 +264,21 @@ impl Made<'_> {
                 file: &file,
                 measure: options.measure,
             };
-            let report = measured(&written, &built.model, &shapes, &about, self.spec)?;
-            warnings.extend(beyond_bound(&report, &shapes, built));
+            // A document speaks of the finest level.
+            let asserts = if level == 0 { self.spec.asserts.as_slice() } else { &[] };
+            let report = measured(&written, &built.model, shapes, &about, asserts)?;
+            warnings.extend(beyond_bound(&report, shapes, built));
             Some(report)
         };
         let deviations = if options.deviations {
-            let maps = report::deviation_maps(&written, &built.model, &shapes).map_err(unmeasured)?;
+            let maps = report::deviation_maps(&written, &built.model, shapes).map_err(unmeasured)?;
             meshes.iter().map(|geometry| maps[*geometry].clone()).collect()
         } else {
             Vec::new()
         };
-        let origins = options.origins.then(|| Origins::new((built, &shapes), meshes, &written));
+        let origins = options.origins.then(|| Origins::new((built, shapes), meshes, &written));
         let warnings = self.document.diagnostics(warnings);
-        Ok(Compiled { bytes: written.bytes, file, profile, report, origins, deviations, warnings })
+        Ok(Compiled { bytes: written.bytes, file, profile, level, report, origins, deviations, warnings })
     }
 }
 
@@ -310,13 +330,6 @@ pub fn curve(
 ) -> Result<Option<AnyCurve>, Diagnostics> {
     let parts = curve_parts(document, files, options, name)?;
     Ok(parts.and_then(|parts| parts.into_iter().next()))
-}
-
-/// The file of an asset: `NAME.glb`, with the variant and every profile but `core` before the end.
-fn file_name(options: &Options, profile: Profile) -> String {
-    let variant = options.variant.as_deref().map_or_else(String::new, |variant| format!(".{variant}"));
-    let profile = if profile == Profile::Core { String::new() } else { format!(".{}", profile.name()) };
-    format!("{}{variant}{profile}.glb", options.name)
 }
 
 fn place(built: &Built, shape: ShapeHandle) -> Span {
@@ -521,72 +534,17 @@ fn measured(
     model: &Model,
     shapes: &[ShapeHandle],
     about: &About<'_>,
-    spec: &Spec,
+    asserts: &[Assertion],
 ) -> Result<Report, Vec<Diagnostic>> {
     let mut report = report::measure(written, model, shapes, about).map_err(unmeasured)?;
     let mut held = Vec::new();
     let mut failed = Vec::new();
-    for assertion in &spec.asserts {
-        match assert(&report, assertion) {
+    for assertion in asserts {
+        match assertion::assert(&report, assertion) {
             Ok(check) => held.push(check),
             Err(diagnostic) => failed.push(*diagnostic),
         }
     }
     report.assertions = held;
     if failed.is_empty() { Ok(report) } else { Err(failed) }
-}
-
-fn assert(report: &Report, assertion: &Assertion) -> Result<Check, Box<Diagnostic>> {
-    let path = &assertion.path.value;
-    let found = report.fact(path).map_err(|fault| {
-        let message = format!("the report has no `{}`, asked for by `{path}`", fault.missing);
-        let known = fault.known.iter().map(String::as_str);
-        let near = crate::language::spec::closest(&fault.missing, known).map(str::to_owned);
-        let mut report =
-            Diagnostic::error(Code::UnknownFact, message).at(assertion.path.span, "no such fact");
-        if !fault.known.is_empty() {
-            report = report.note(format!("there is: {}", fault.known.join(", ")));
-        }
-        if let Some(near) = near {
-            report = report.help(format!("did you mean `{near}`?"));
-        }
-        Box::new(report)
-    })?;
-    let demand = demanded(&assertion.demand);
-    if holds(&assertion.demand, &found) {
-        return Ok(Check { path: path.clone(), found });
-    }
-    let message = format!("assertion failed: `{path}` is {found}, not {demand}");
-    Err(Box::new(
-        Diagnostic::error(Code::AssertionFailed, message).at(assertion.span, format!("found {found}")),
-    ))
-}
-
-fn holds(demand: &Demand, found: &serde_json::Value) -> bool {
-    match demand {
-        Demand::Equals(Expected::Number(number)) => found.as_f64() == Some(*number),
-        Demand::Equals(Expected::Boolean(truth)) => found.as_bool() == Some(*truth),
-        Demand::Equals(Expected::Text(text)) => found.as_str() == Some(text),
-        Demand::Bounds { at_most, at_least, equals, tolerance } => found.as_f64().is_some_and(|found| {
-            at_most.is_none_or(|most| found <= most)
-                && at_least.is_none_or(|least| found >= least)
-                && equals.is_none_or(|number| (found - number).abs() <= *tolerance)
-        }),
-    }
-}
-
-fn demanded(demand: &Demand) -> String {
-    match demand {
-        Demand::Equals(Expected::Number(number)) => number.to_string(),
-        Demand::Equals(Expected::Boolean(truth)) => truth.to_string(),
-        Demand::Equals(Expected::Text(text)) => format!("\"{text}\""),
-        Demand::Bounds { at_most, at_least, equals, tolerance } => {
-            let bounds = [
-                at_least.map(|least| format!("at least {least}")),
-                at_most.map(|most| format!("at most {most}")),
-                equals.map(|number| format!("{number} give or take {tolerance}")),
-            ];
-            bounds.into_iter().flatten().collect::<Vec<_>>().join(" and ")
-        }
-    }
 }

@@ -14,6 +14,7 @@ mod glb;
 mod heights;
 mod hostile;
 mod joined;
+mod lods;
 mod lofts;
 mod morphs;
 mod motion;

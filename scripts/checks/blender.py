@@ -11,7 +11,7 @@ import bpy  # isort: skip -- the wheel makes bmesh importable
 import bmesh
 
 from checks import blender_motion, finding, played
-from checks.document import split, without_animations
+from checks.document import Document, split, without_animations
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -22,16 +22,23 @@ TOOL = "blender"
 def measure(path: Path) -> finding.Measured:
     """The facts of one file. Blender is Z-up: its (x, y, z) is glTF's (x, z, -y)."""
     open_still(path)
+    document = Document(path)
+    coarser = document.coarser_meshes
     shown = [item for item in bpy.context.scene.objects if item.type == "MESH"]
     graph = bpy.context.evaluated_depsgraph_get()
     graph.update()
     meshes = {item.data.name: item.data for item in shown}
     totals = {
         "meshes": len(meshes),
-        "nodes": count_nodes(),
+        "nodes": count_nodes() - len(document.carriers),
         "materials": len(bpy.data.materials),
         "images": len(bpy.data.images),
-        "bounds": box(item.matrix_world @ vertex.co for item in shown for vertex in item.data.vertices),
+        "bounds": box(
+            item.matrix_world @ vertex.co
+            for item in shown
+            if item.data.name not in coarser
+            for vertex in item.data.vertices
+        ),
     }
     shapes = {name: shape(mesh) for name, mesh in meshes.items()}
     nodes = blender_motion.worlds(graph)

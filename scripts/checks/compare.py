@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from checks.finding import Finding, Measured
@@ -57,6 +58,10 @@ PROFILES = {
     "web": ["KHR_mesh_quantization", "EXT_meshopt_compression"],
 }
 EXPECTED = {"web": ("UNSUPPORTED_EXTENSION at /extensionsUsed", "UNUSED_OBJECT at /buffers/0:")}
+# The validator does not know the extension of levels of detail either, nor that it uses nodes.
+OF_LEVELS = ("UNSUPPORTED_EXTENSION at /extensionsUsed", "UNUSED_OBJECT at /nodes/")
+# What a level of detail has in common with the finest.
+LIKE_THE_FINEST = ("closed", "manifold", "components", "euler")
 # Directions of bytes are of unit length within what rounding three of them takes, on an octahedron or not.
 BYTE_DIRECTION = 0.013
 # Every file must hold these whatever the report says. A normal of unit length in single precision is
@@ -134,17 +139,21 @@ def compare(asset: str, report: Facts, measured: list[Measured]) -> list[Finding
         for other in measured:
             totals |= {fact: value for fact, value in other.totals.items() if fact == DRAWN}
         profile = report.get("profile", "core")
-        findings += facts(asset, ("totals", profile), totals, one.tool, expected(profile, one.totals))
+        findings += facts(asset, ("totals", profile), totals, one.tool, expected(report, one.totals))
         findings += shapes(asset, (claimed, profile), one)
         findings += nodes(asset, report, one)
         findings += clips(asset, report, one)
+        findings += levels(asset, report, one)
+        findings += colliders(asset, report, one)
     findings += deviations(asset, report.get("shapes", {}))
     return findings + list(unmeasured(asset, report, findings))
 
 
-def expected(profile: str, totals: Facts) -> Facts:
-    """The totals without what the validator must say of a profile."""
-    known = EXPECTED.get(profile, ())
+def expected(report: Facts, totals: Facts) -> Facts:
+    """The totals without what the validator must say of a profile and of levels of detail."""
+    known = EXPECTED.get(report.get("profile", "core"), ())
+    if any(len(chain) > 1 for chain in report.get("lods", {}).values()):
+        known += OF_LEVELS
     left = [message for message in totals.get("validator-messages", []) if not message.startswith(known)]
     dropped = len(totals.get("validator-messages", [])) - len(left) if known else 0
     if not dropped:
@@ -238,6 +247,61 @@ def reaches(asset: str, named: tuple[str, Facts], one: Measured) -> Iterator[Fin
         yield Finding(
             asset, f"{place}.worst", one.tool, task["worst"], worst, differs(task["worst"], worst), COORDINATE
         )
+
+
+def levels(asset: str, report: Facts, one: Measured) -> Iterator[Finding]:
+    """Levels of detail, each beside the one before and the finest.
+
+    It has fewer triangles, is closed where the finest is, in as many parts with as many holes, has no border where that
+    has none, is no further from it than both may be from the surface, and nothing of it is lost.
+    """
+    for name, chain in report.get("lods", {}).items():
+        if not all(level["mesh"] in one.shapes for level in chain):
+            continue
+        finest = one.shapes[chain[0]["mesh"]]
+        for before, level in pairwise(chain):
+            place, found = f"lods.{name}.{level['level']}", one.shapes[level["mesh"]]
+            same = [(fact, finest[fact]) for fact in LIKE_THE_FINEST if fact in found]
+            if "boundary-edges" in found and finest["boundary-edges"] == 0:
+                same.append(("boundary-edges", 0))
+            for fact, told in [("triangles", level["triangles"]), *same]:
+                if fact in found:
+                    seen = found[fact]
+                    yield Finding(asset, f"{place}.{fact}", one.tool, told, seen, differs(told, seen), 0.0)
+            # The error bounds how far a level is from its surfaces. Where two of them meet in an edge both may be off,
+            # and a corner may be cut off; what is further away is lost.
+            told = 2.0 * (chain[0]["error"] + level["error"])
+            for fact in ("level-distance", "level-lost"):
+                if fact in found:
+                    seen = found[fact]
+                    yield Finding(asset, f"{place}.error", one.tool, told, seen, max(0.0, seen - told), 1e-6 * told)
+            if drawn(level) >= drawn(before):
+                yield failure(asset, "report", f"has no fewer triangles than level {before['level']}", place)
+
+
+def colliders(asset: str, report: Facts, one: Measured) -> Iterator[Finding]:
+    """Bodies for physics that stand in extras: their volumes, and that they hold what they stand for."""
+    found = one.totals.get("colliders", {})
+    for name, claim in report.get("colliders", {}).items():
+        if name not in found:
+            continue
+        seen, place = found[name], f"colliders.{name}"
+        volume = abs(claim["volume"])
+        gap = abs(claim["volume"] - seen["volume"])
+        yield Finding(asset, f"{place}.volume", one.tool, claim["volume"], seen["volume"], gap, 1e-5 * volume)
+        for fact, told in (("vertices", claim.get("vertices")), ("convex", True)):
+            if fact in seen:
+                yield Finding(asset, f"{place}.{fact}", one.tool, told, seen[fact], differs(told, seen[fact]), 0.0)
+        if claim["of"] in seen["outside"]:
+            # Both are in single precision.
+            allowed = max(2.0 * claim["outside"], 1e-6 * max(1.0, volume ** (1 / 3)))
+            away = seen["outside"][claim["of"]]
+            yield Finding(asset, f"{place}.outside", one.tool, claim["outside"], away, away, allowed)
+
+
+def drawn(level: Facts) -> int:
+    """Triangles and segments of a level of detail."""
+    return level["triangles"] + level.get("segments", 0)
 
 
 def turned(claimed: list[float], found: list[float] | None, size: float) -> float:

@@ -200,6 +200,25 @@ class Document:
         world = parent @ local_matrix(node)
         return [(node, world)] + [f for child in node.get("children", []) for f in self._below(child, world)]
 
+    @cached_property
+    def coarser(self) -> set[int]:
+        """Nodes that others name as their coarser levels of detail."""
+        nodes = self.json.get("nodes", [])
+        return {level for node in nodes for level in node.get("extensions", {}).get("MSFT_lod", {}).get("ids", [])}
+
+    @cached_property
+    def carriers(self) -> set[int]:
+        """Nodes without a name that only carry a mesh: coarser levels, and the finest beside them."""
+        nodes = self.json.get("nodes", [])
+        finest = {i for i, node in enumerate(nodes) if "MSFT_lod" in node.get("extensions", {}) and "name" not in node}
+        return self.coarser | finest
+
+    @property
+    def coarser_meshes(self) -> set[str]:
+        """The names of the meshes that only coarser levels show."""
+        nodes = self.json.get("nodes", [])
+        return {self.meshes[nodes[i]["mesh"]].name for i in self.coarser}
+
     @property
     def instances(self) -> list[tuple[int, NDArray[np.float64]]]:
         """(mesh index, world matrix) for each node that shows a mesh."""

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 TOOL = "trimesh"
+MOST_SAMPLES = 4000  # places at which the distance between two levels of detail is measured
 
 
 def measure(path: Path) -> finding.Measured:
@@ -32,11 +33,78 @@ def measure(path: Path) -> finding.Measured:
         low, high = scene.bounds
         totals |= {"bounds": {"min": low.tolist(), "max": high.tolist()}, "meshes": len(scene.geometry)}
     shapes = {name: shape(mesh) for name, mesh in scene.geometry.items()}
+    for name, mesh in scene.geometry.items():
+        finest = scene.geometry.get(name.rpartition("_LOD")[0])
+        if finest is not None:
+            shapes[name] |= {"level-distance": distance(mesh, finest), "level-lost": distance(finest, mesh)}
     for name in lines & set(shapes):
         del shapes[name]["bounds"]
     shapes |= {name: {} for name in lines - set(shapes)}
     nodes = {name: scene.graph[name][0].T.ravel().tolist() for name in scene.graph.nodes}
+    totals["colliders"] = colliders(path, scene)
     return finding.Measured(TOOL, trimesh.__version__, str(path), totals, shapes, nodes)
+
+
+def colliders(path: Path, scene: trimesh.Scene) -> dict[str, dict[str, Any]]:
+    """The bodies in the extras of nodes, by name: volume, corners of hulls, and how far meshes reach out of them."""
+    meshes = {name: np.asarray(mesh.vertices) for name, mesh in scene.geometry.items()}
+    found = {}
+    for node in Document(path).json.get("nodes", []):
+        for told in node.get("extras", {}).get("colliders", []):
+            x, y, z, w = told["rotation"]
+            turn = trimesh.transformations.quaternion_matrix([w, x, y, z])[:3, :3]
+            made = body(told)
+            facts: dict[str, Any] = {"volume": float(made.volume)}
+            if told["shape"] == "hull":
+                facts |= {"vertices": len(told["points"]), "convex": bool(made.is_convex and made.is_watertight)}
+            facts["outside"] = {
+                name: float(outside(told, made, (points - told["translation"]) @ turn))
+                for name, points in meshes.items()
+            }
+            found[told["name"]] = facts
+    return found
+
+
+def body(told: dict[str, Any]) -> Any:
+    """A body about its middle, round ones along z as trimesh has them."""
+    if told["shape"] == "box":
+        return trimesh.primitives.Box(extents=told["size"])
+    if told["shape"] == "sphere":
+        return trimesh.primitives.Sphere(radius=told["radius"])
+    if told["shape"] == "hull":
+        faces = np.reshape(told["indices"], (-1, 3))
+        return trimesh.Trimesh(np.array(told["points"], float), faces, process=False)
+    kind = {"capsule": trimesh.primitives.Capsule, "cylinder": trimesh.primitives.Cylinder}[told["shape"]]
+    return kind(radius=told["radius"], height=told["height"])
+
+
+def outside(told: dict[str, Any], made: Any, points: NDArray[np.float64]) -> float:
+    """How far the farthest of some points is outside of a body; of hulls how far above the plane of a face."""
+    height = told.get("height", 0.0)
+    across, along = np.hypot(points[:, 0], points[:, 2]), np.abs(points[:, 1])
+    if told["shape"] == "box":
+        away = (np.abs(points) - np.array(told["size"]) / 2).max(axis=1)
+    elif told["shape"] == "sphere":
+        away = np.linalg.norm(points, axis=1) - told["radius"]
+    elif told["shape"] == "capsule":
+        away = np.hypot(across, np.maximum(along - height / 2, 0.0)) - told["radius"]
+    elif told["shape"] == "cylinder":
+        away = np.maximum(across - told["radius"], along - height / 2)
+    else:
+        planes = made.face_normals
+        away = (points @ planes.T - np.einsum("ij,ij->i", planes, made.triangles[:, 0])).max(axis=1)
+    return max(0.0, float(away.max()))
+
+
+def distance(one: trimesh.Trimesh, other: trimesh.Trimesh) -> float:
+    """How far the farthest of corners and middles of a surface is from another."""
+    return float(other.nearest.on_surface(samples(one))[1].max())
+
+
+def samples(mesh: trimesh.Trimesh) -> NDArray[np.float64]:
+    """Corners and middles of the triangles of a mesh, at most some thousands, evenly chosen."""
+    points = np.concatenate([mesh.vertices[np.unique(mesh.faces)], mesh.triangles_center])
+    return points[:: len(points) // MOST_SAMPLES + 1]
 
 
 def shape(raw: trimesh.Trimesh) -> dict[str, Any]:

@@ -73,8 +73,9 @@ function unpack(bytes) {
   const carriers = (document.nodes ?? [])
     .map((node, index) => ({ node, index }))
     .filter(({ node }) => node.name === undefined && node.mesh !== undefined && node.children === undefined);
-  const grid = carriers.length
-    ? { step: Math.fround(carriers[0].node.scale[0]), offset: carriers[0].node.translation.map(Math.fround) }
+  const placing = carriers.find(({ node }) => node.scale !== undefined)?.node;
+  const grid = placing
+    ? { step: Math.fround(placing.scale[0]), offset: placing.translation.map(Math.fround) }
     : document.asset.extras?.grid;
   const floats = new Map();
   const asFloats = (index, map) => {
@@ -153,11 +154,14 @@ function fromMetres(all, { step, offset }) {
   return found;
 }
 
-// The nodes that only carry a mesh, which stand last: the node above shows it itself.
+// The nodes that only carry a mesh, which stand last: the node above shows it itself. Those of levels of detail stay, in metres.
 function drop(document, carriers) {
   const first = document.nodes.length - carriers.length;
+  const coarser = new Set(document.nodes.flatMap((node) => node.extensions?.MSFT_lod?.ids ?? []));
+  const gone = new Set();
   for (const { node, index } of carriers) {
     if (index < first) throw new Error(`node ${index} carries a mesh and does not stand after all others`);
+    if (coarser.has(index) || node.extensions?.MSFT_lod) continue;
     const shows = document.nodes.findIndex((other) => other.children?.includes(index));
     const above = document.nodes[shows];
     for (const { target } of (document.animations ?? []).flatMap((animation) => animation.channels))
@@ -165,8 +169,19 @@ function drop(document, carriers) {
     above.mesh = node.mesh;
     above.children = above.children.filter((child) => child !== index);
     if (above.children.length === 0) delete above.children;
+    gone.add(index);
   }
-  document.nodes.length = first;
+  for (const { node, index } of carriers) {
+    if (gone.has(index) || node.skin !== undefined) continue;
+    delete node.scale;
+    delete node.translation;
+  }
+  const place = (index) => index - [...gone].filter((other) => other < index).length;
+  document.nodes = document.nodes.filter((_, index) => !gone.has(index));
+  for (const node of document.nodes) {
+    if (node.children) node.children = node.children.map(place);
+    if (node.extensions?.MSFT_lod) node.extensions.MSFT_lod.ids = node.extensions.MSFT_lod.ids.map(place);
+  }
 }
 
 await MeshoptDecoder.ready;

@@ -49,6 +49,7 @@ def count(document: Document) -> dict[str, Any]:
     """Counts of the whole file; draw calls count every instance, the other sums every mesh once."""
     meshes = document.meshes
     totals = {key: len(document.json.get(key, [])) for key in ("materials", "images", "nodes")}
+    totals["nodes"] -= len(document.carriers)
     totals["meshes"] = len(meshes)
     totals["primitives"] = sum(len(mesh.primitives) for mesh in meshes)
     totals["triangles"] = sum(len(mesh.triangles) for mesh in meshes)

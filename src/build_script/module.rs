@@ -8,6 +8,8 @@ use gltf::json::Root;
 
 use super::names;
 use crate::compile::Compiled;
+use crate::geometry::number::single;
+use crate::gltf::ReadLevels;
 
 /// What the module says of an asset.
 pub(super) struct Asset {
@@ -19,6 +21,8 @@ pub(super) struct Asset {
     bounds: Option<[[f64; 3]; 2]>,
     /// Kinds of things and their names, as they stand in the file.
     lists: Vec<(&'static str, Vec<String>)>,
+    /// For each mesh with levels of detail their meshes and for what part of the picture each is good at least.
+    levels: Vec<Vec<(String, f64)>>,
 }
 
 impl Asset {
@@ -27,8 +31,13 @@ impl Asset {
             compiled.report.as_ref().map(|report| [report.totals.bounds.min, report.totals.bounds.max]);
         // What was written is read; it cannot be broken.
         let plain = crate::packing::unpacked(&compiled.bytes).unwrap_or_default();
-        let root = crate::gltf::read(&plain).map(|read| read.root).unwrap_or_default();
-        Self { folder: folder.to_owned(), file: compiled.file.clone(), bounds, lists: lists(&root) }
+        let (root, levels) =
+            crate::gltf::read(&plain).map(|read| (read.root, read.levels)).unwrap_or_default();
+        let name = |mesh: &usize| root.meshes[*mesh].name.clone().unwrap_or_default();
+        let named =
+            |one: &ReadLevels| one.meshes.iter().map(name).zip(one.coverage.iter().copied()).collect();
+        let levels = levels.iter().map(named).collect();
+        Self { folder: folder.to_owned(), file: compiled.file.clone(), bounds, lists: lists(&root), levels }
     }
 
     /// Names of the modules around it, and its own.
@@ -174,5 +183,26 @@ fn constants(text: &mut String, asset: &Asset, out: Option<&Path>, space: &str) 
         );
         let _ = writeln!(text, "{space}}}");
     }
+    levels(text, asset, space);
     Ok(())
+}
+
+/// Levels of detail of meshes, whose own names are told apart already.
+fn levels(text: &mut String, asset: &Asset, space: &str) {
+    if asset.levels.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        text,
+        "{space}/// Levels of detail: for each mesh those of its levels, the finest first, and for what part of the picture\n\
+         {space}/// each is good at least.\n{space}pub mod lods {{"
+    );
+    for levels in &asset.levels {
+        let Some((finest, _)) = levels.first() else { continue };
+        let one = |(name, coverage): &(String, f64)| format!("({name:?}, {:?})", single(*coverage));
+        let all = levels.iter().map(one).collect::<Vec<_>>().join(", ");
+        let constant = names::constant(finest);
+        let _ = writeln!(text, "{space}    pub const {constant}: &[(&str, f32)] = &[{all}];");
+    }
+    let _ = writeln!(text, "{space}}}");
 }

@@ -253,6 +253,9 @@ pub(crate) struct Render {
     /// Turn once around in this many pictures
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=720))]
     pub(crate) turntable: Option<u16>,
+    /// The level of detail to show, 0 for the finest
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=7))]
+    pub(crate) lod: u8,
     /// The folder that the document may not read outside of [default: the working directory]
     #[arg(long, value_name = "DIR")]
     pub(crate) root: Option<PathBuf>,

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use crate::cache::{Baked, OutputFile};
 use crate::compile::Compiled;
-use crate::report::{DeviationFacts, Kind, Report};
+use crate::report::{DeviationFacts, Kind, Report, ShapeFacts};
 
 /// An asset with the bytes of its files. Its line is what follows its path.
 pub(crate) fn baked(spec: &str, compiled: Compiled) -> std::io::Result<(Baked, Vec<Vec<u8>>)> {
@@ -36,9 +36,11 @@ pub(super) fn report_of(compiled: &Compiled) -> std::io::Result<Option<(String, 
     Ok(Some((format!("{}.report.json", compiled.file.trim_end_matches(".glb")), text)))
 }
 
-/// The greatest deviation of all shapes.
+/// The greatest deviation of all shapes, coarser levels of detail left out.
 fn worst(report: &Report) -> Option<DeviationFacts> {
-    let deviations = report.shapes.values().map(|shape| shape.deviation);
+    let coarser = report.lods.values().flat_map(|levels| levels.iter().skip(1));
+    let finest = |(name, _): &(&String, &ShapeFacts)| !coarser.clone().any(|level| level.mesh == **name);
+    let deviations = report.shapes.iter().filter(finest).map(|(_, shape)| shape.deviation);
     deviations.max_by(|a, b| a.bound.total_cmp(&b.bound))
 }
 
@@ -61,7 +63,11 @@ pub(super) fn line(compiled: &Compiled) -> String {
         (0, segments) => format!("{segments} line segments"),
         (triangles, segments) => format!("{triangles} triangles  {segments} line segments"),
     };
-    format!("{drawn}  {bytes}{accuracy}")
+    let levels = match report.lods.values().map(Vec::len).max() {
+        Some(count) if count > 1 => format!("  {count} levels"),
+        _ => String::new(),
+    };
+    format!("{drawn}{levels}  {bytes}{accuracy}")
 }
 
 /// A length for people.

@@ -8,7 +8,7 @@ use super::Outcome;
 use super::arguments::{Hidden, Render, ShadingName};
 use super::output::Printer;
 use super::project::task;
-use crate::compile::{Options, compile};
+use crate::compile::{Options, compile_profiles};
 use crate::gltf::Profile;
 use crate::preview::asset::{self, Asset};
 use crate::preview::heat::{Heat, HeatMap, Measured};
@@ -62,8 +62,9 @@ fn picture(render: &Render, printer: &Printer) -> Result<(), Fault> {
         return Err(usage("--heat makes pictures of one moment: write a .png, or an .apng with --turntable"));
     }
     let (bytes, deviations) = bytes(render, printer)?;
-    let asset = asset::read(&bytes)
+    let mut asset = asset::read(&bytes)
         .map_err(|error| (Some(format!("{}: {error}", render.file.display())), Outcome::Errors))?;
+    asset.show_level(render.lod.into());
     for note in &asset.notes {
         printer.result(&format!("note: {note}"), &json!({ "note": note }));
     }
@@ -144,15 +145,18 @@ fn bytes(render: &Render, printer: &Printer) -> Result<(Vec<u8>, Vec<Option<Meas
         deviations: render.heat == Some(Heat::Deviation),
         profiles: vec![Profile::Core],
     };
-    let compiled = document.and_then(|document| compile(&document, &files, &options));
-    let compiled = compiled.map_err(|list| {
+    let compiled = document.and_then(|document| compile_profiles(&document, &files, &options));
+    let mut compiled = compiled.map_err(|list| {
         printer.diagnostics(&list);
         (None, Outcome::Errors)
     })?;
-    if !compiled.warnings.is_empty() {
-        printer.diagnostics(&compiled.warnings);
+    // Levels of detail stand in one file or in several; warnings stand with the first.
+    for one in compiled.iter().filter(|one| !one.warnings.is_empty()) {
+        printer.diagnostics(&one.warnings);
     }
-    Ok((compiled.bytes, compiled.deviations))
+    let shown = usize::from(render.lod).min(compiled.len() - 1);
+    let shown = compiled.swap_remove(shown);
+    Ok((shown.bytes, shown.deviations))
 }
 
 fn stage(asset: &Asset, render: &Render, time: f64) -> Result<Stage, Fault> {

@@ -6,6 +6,7 @@
 //! 2020; `EXT_meshopt_compression`, 2021.
 
 mod buffer;
+mod carrier;
 mod lines;
 mod material;
 mod morph;
@@ -17,8 +18,9 @@ mod read_morph;
 mod read_motion;
 mod write;
 
+pub use carrier::ReadLevels;
 pub use profile::Profile;
 pub use read::{Geometry, Indices, Lines, Part, PositionBytes, Read, ReadError, read};
 pub use read_morph::ReadTarget;
 pub use read_motion::{ReadAnimation, ReadChannel, ReadInfluences, ReadSkin};
-pub use write::{WriteError, Written, WrittenAnimation, WrittenGeometry, WrittenTarget, write};
+pub use write::{WriteError, Written, WrittenAnimation, WrittenGeometry, WrittenLevel, WrittenTarget, write};

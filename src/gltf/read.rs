@@ -13,8 +13,9 @@ use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Index, Root};
 use thiserror::Error;
 
+use super::carrier::{ReadLevels, drop_carriers, read_levels};
 use crate::geometry::mesh;
-use crate::geometry::number::{single, size};
+use crate::geometry::number::size;
 use crate::scene::Grid;
 
 /// A file, read.
@@ -30,6 +31,8 @@ pub struct Read<'a> {
     pub grid: Option<Grid>,
     /// Nodes that only took a mesh from the grid to metres, and are no nodes here, with those that show it.
     pub(super) carriers: Vec<(usize, usize)>,
+    /// The meshes that have levels of detail.
+    pub levels: Vec<ReadLevels>,
 }
 
 /// A position as it stands in a file: three little-endian floats.
@@ -141,8 +144,8 @@ pub enum ReadError {
     Vertex(usize, u32),
 }
 
-/// Reads the triangles of every mesh. Compressed files are unpacked before (`packing::unpacked`); in one whose positions
-/// lie on a grid each mesh is shown by the node that was made to show it.
+/// Reads the triangles of every mesh. Compressed files are unpacked before (`packing::unpacked`); nodes that only
+/// carry a mesh for another are left out: each mesh is shown by the node that was made to show it, levels of detail by none.
 ///
 /// # Errors
 /// When the file is broken or holds what is not read here (compressed data, whole numbers without a grid that Kiln
@@ -159,8 +162,9 @@ pub fn read(bytes: &[u8]) -> Result<Read<'_>, ReadError> {
     let data = Data { root: &root, binary, grid };
     let geometries: Result<Vec<_>, _> = (0..root.meshes.len()).map(|mesh| geometry(data, mesh)).collect();
     let geometries = geometries?;
-    let carriers = grid.map_or_else(Vec::new, |grid| drop_carriers(&mut root, grid));
-    Ok(Read { root, geometries, binary, grid, carriers })
+    let levels = read_levels(&root);
+    let carriers = drop_carriers(&mut root, grid);
+    Ok(Read { root, geometries, binary, grid, carriers, levels })
 }
 
 #[derive(Clone, Copy)]
@@ -168,33 +172,6 @@ struct Data<'r, 'a> {
     root: &'r Root,
     binary: &'a [u8],
     grid: Option<Grid>,
-}
-
-/// Takes away the nodes that only take a mesh from the grid to metres: the last ones, each below the one that shows it;
-/// tells which they were.
-fn drop_carriers(root: &mut Root, grid: Grid) -> Vec<(usize, usize)> {
-    let mut dropped = Vec::new();
-    let (step, offset) = (single(grid.step), grid.offset.as_vec3().to_array());
-    let carries = |node: &gltf::json::Node| {
-        let plain = node.name.is_none() && node.children.is_none() && node.rotation.is_none();
-        node.mesh.filter(|_| plain && node.scale == Some([step; 3]) && node.translation == Some(offset))
-    };
-    while let Some((last, mesh)) =
-        root.nodes.last().and_then(|node| Some((root.nodes.len() - 1, carries(node)?)))
-    {
-        let above =
-            |node: &gltf::json::Node| node.children.iter().flatten().any(|child| child.value() == last);
-        let found = root.nodes.iter().position(|node| above(node) && node.mesh.is_none());
-        let Some(found) = found else { break };
-        let shows = &mut root.nodes[found];
-        dropped.push((last, found));
-        shows.mesh = Some(mesh);
-        let left: Vec<_> =
-            shows.children.take().into_iter().flatten().filter(|child| child.value() != last).collect();
-        shows.children = (!left.is_empty()).then_some(left);
-        root.nodes.pop();
-    }
-    dropped
 }
 
 /// Where the elements of an accessor stand.

@@ -13,13 +13,13 @@ use thiserror::Error;
 use super::buffer::{Binary, Content, Elements, at, index_accessors, index_width};
 use super::position::positions;
 use super::profile::Profile;
-use super::{lines, material, morph, motion};
+use super::{carrier, lines, material, morph, motion};
 use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
-use crate::geometry::number::{floor_count, single, size};
+use crate::geometry::number::{floor_count, size};
 use crate::geometry::tessellate::Deviation;
 use crate::packing::{exponential, octahedral, signed_byte};
-use crate::scene::{Checked, Geometry, Grid};
+use crate::scene::{Checked, Geometry, Grid, LevelUse};
 
 /// The bytes of a file and what only its writer knows of them.
 #[derive(Clone, Debug)]
@@ -30,6 +30,17 @@ pub struct Written {
     pub geometries: Vec<WrittenGeometry>,
     /// For each animation what is known of it.
     pub animations: Vec<WrittenAnimation>,
+    /// The levels of detail of each mesh that has some, the finest first.
+    pub levels: Vec<Vec<WrittenLevel>>,
+}
+
+/// A level of detail, with its geometry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WrittenLevel {
+    /// The level.
+    pub level: LevelUse,
+    /// Index into [`Written::geometries`].
+    pub geometry: usize,
 }
 
 /// What is known of an animation beyond its bytes.
@@ -52,6 +63,8 @@ pub struct WrittenGeometry {
     pub name: String,
     /// A mesh of the file that shows it.
     pub mesh: usize,
+    /// Bytes of its vertices and indices in the file, without materials.
+    pub bytes: u64,
     /// Distance from the exact shape before rounding.
     pub deviation: Deviation,
     /// Distance that was asked for, metres.
@@ -103,19 +116,22 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
         .geometries
         .iter()
         .map(|geometry| {
+            let before = writer.binary.bytes.len();
             let triangles = (!geometry.mesh.triangles.is_empty()).then(|| writer.geometry(geometry));
-            (triangles, lines::shared(&mut writer.root, &mut writer.binary, scene.grid, &geometry.wire))
+            let lines = lines::shared(&mut writer.root, &mut writer.binary, scene.grid, &geometry.wire);
+            (triangles, lines, (writer.binary.bytes.len() - before) as u64)
         })
         .collect();
     material::images(&mut writer.root, &mut writer.binary, scene);
     material::materials(&mut writer.root, scene);
     for mesh in &scene.meshes {
-        let (triangles, lines) = &shared[mesh.geometry];
+        let (triangles, lines, _) = &shared[mesh.geometry];
         writer.mesh(checked, mesh, triangles.as_ref(), lines);
     }
     motion::skins(&mut writer.root, &mut writer.binary, scene);
-    let carriers = writer.carriers(scene);
-    motion::animations(&mut writer.root, &mut writer.binary, scene, &carriers);
+    let carriers = carrier::carriers(scene);
+    let bearers = carrier::bearers(scene, &carriers);
+    motion::animations(&mut writer.root, &mut writer.binary, scene, &bearers);
     writer.nodes(checked, &carriers);
     let animated = |animation: &crate::scene::Animation| WrittenAnimation {
         name: animation.name.clone(),
@@ -127,6 +143,7 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
     let known = |(index, geometry): (usize, &Geometry)| WrittenGeometry {
         name: geometry.name.clone(),
         mesh: scene.meshes.iter().position(|mesh| mesh.geometry == index).unwrap_or(0),
+        bytes: shared[index].2,
         deviation: geometry.deviation,
         tolerance: geometry.tolerance,
         targets: geometry
@@ -142,7 +159,11 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
         anchors: if anchors { geometry.mesh.vertices.iter().map(|v| v.anchor).collect() } else { Vec::new() },
     };
     let geometries = scene.geometries.iter().enumerate().map(known).collect();
-    Ok(Written { bytes: writer.finish()?, geometries, animations })
+    let written =
+        |level: &LevelUse| WrittenLevel { level: *level, geometry: scene.meshes[level.mesh].geometry };
+    let levels = scene.meshes.iter().filter(|mesh| !mesh.levels.is_empty());
+    let levels = levels.map(|mesh| mesh.levels.iter().map(written).collect()).collect();
+    Ok(Written { bytes: writer.finish()?, geometries, animations, levels })
 }
 
 /// The extension that allows attributes of whole numbers.
@@ -287,7 +308,7 @@ impl Writer {
         });
     }
 
-    fn nodes(&mut self, checked: Checked<'_>, carriers: &Carriers) {
+    fn nodes(&mut self, checked: Checked<'_>, carriers: &[carrier::Carrier]) {
         let scene = checked.scene();
         let children = |parent: Option<usize>| -> Vec<Index<Node>> {
             let of = |(index, node): (usize, &crate::scene::Node)| {
@@ -297,17 +318,20 @@ impl Writer {
         };
         for (index, node) in scene.nodes.iter().enumerate() {
             let mut below = children(Some(index));
-            below.extend(carriers.iter().find(|(shown, _)| *shown == index).map(|(_, carrier)| *carrier));
+            below.extend(carrier::below(scene, carriers, index));
+            let mesh = node.mesh.filter(|_| !carrier::is_relieved(carriers, index));
+            let told = mesh.map(|mesh| carrier::told(scene, carriers, (index, mesh)));
+            let (extensions, levels) = told.unwrap_or_default();
             let plain = |vector: glam::DVec3, rest: glam::DVec3| {
                 (vector != rest).then(|| vector.as_vec3().to_array())
             };
             self.root.push(Node {
                 camera: None,
                 children: (!below.is_empty()).then_some(below),
-                extensions: None,
-                extras: node.socket.then(motion::socket).flatten(),
+                extensions,
+                extras: node.socket.then(motion::socket).flatten().or(levels),
                 matrix: None,
-                mesh: node.mesh.filter(|_| self.grid.is_none() || node.skin.is_some()).map(at),
+                mesh: mesh.map(at),
                 name: Some(node.name.clone()),
                 rotation: (node.rotation != glam::DQuat::IDENTITY)
                     .then(|| UnitQuaternion(node.rotation.as_quat().to_array())),
@@ -317,32 +341,11 @@ impl Writer {
                 weights: None,
             });
         }
-        self.push_carriers(scene, carriers);
+        carrier::push(&mut self.root, scene, carriers);
         let nodes = children(None);
         let scene =
             self.root.push(Scene { extensions: None, extras: None, name: Some(scene.name.clone()), nodes });
         self.root.scene = Some(scene);
-    }
-
-    /// For each node whose mesh needs one, the node below it that takes the mesh from the grid to metres. They stand
-    /// after all others, so that the others keep their places.
-    fn carriers(&self, scene: &crate::scene::Scene) -> Carriers {
-        let shown =
-            scene.nodes.iter().enumerate().filter(|(_, node)| node.mesh.is_some() && node.skin.is_none());
-        let own = shown.filter(|_| self.grid.is_some()).map(|(index, _)| index);
-        own.enumerate().map(|(place, index)| (index, at(scene.nodes.len() + place))).collect()
-    }
-
-    fn push_carriers(&mut self, scene: &crate::scene::Scene, carriers: &Carriers) {
-        let Some(grid) = self.grid else { return };
-        for (shown, _) in carriers {
-            self.root.push(Node {
-                mesh: scene.nodes[*shown].mesh.map(at),
-                scale: Some([single(grid.step); 3]),
-                translation: Some(grid.offset.as_vec3().to_array()),
-                ..Node::default()
-            });
-        }
     }
 
     /// Header, JSON chunk and binary chunk.

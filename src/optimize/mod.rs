@@ -2,12 +2,14 @@
 
 mod band;
 mod compact;
+mod decimate;
 mod grid;
 mod order;
 mod tangent;
 
 use crate::scene::Scene;
 
+pub use decimate::decimated;
 pub use grid::{GRID_SHARE, MOST_GRID_SHARE, TooCoarse, grid_share};
 pub use order::Order;
 

@@ -3,13 +3,14 @@
 //! Promise: every index, count and stride is checked before it is handed over, so that no input of these functions can
 //! read or write beyond its arrays; a result depends on the input alone. Where bytes of a file depend on it, only what
 //! computes in integers, or adds and compares floats, is taken: what a processor contracts into one operation differs
-//! between them. Tangents are the exception. Not promised: that indices are those of a sensible mesh.
+//! between them. Tangents and simplified meshes are the exception. Not promised: that indices are those of a sensible mesh.
 //!
 //! Source: A. Kapoulkine, meshoptimizer 1.3, 2026.
 
 mod codec;
 mod filter;
 mod order;
+mod simplify;
 mod tangent;
 mod unpack;
 
@@ -19,6 +20,7 @@ pub use codec::{
 };
 pub use filter::{Filter, exponential, octahedral, signed_byte};
 pub use order::{order_for_cache, order_for_strips};
+pub use simplify::{Attributes, simplified};
 pub use tangent::corner_tangents;
 pub use unpack::{EXTENSION, UnpackError, stored_lengths, unpacked};
 

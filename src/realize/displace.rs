@@ -2,10 +2,11 @@
 
 use glam::{DVec2, DVec3};
 
-use super::RealizeError;
+use super::inherited::Inherited;
 use super::limit;
 use super::reach::bent;
-use super::shape::{Inherited, Made, Maker, cost, flatten};
+use super::shape::{Made, Maker, cost, flatten};
+use super::{Level, RealizeError};
 use crate::geometry::number::single_rounding;
 use crate::geometry::tessellate::{Deviation, Heights, TessellateError, displace, normal_picture};
 use crate::model::{Displacement, NormalMap, ShapeHandle, Smoothing};
@@ -58,11 +59,11 @@ impl Maker<'_> {
     fn subject(&self, recipe: &Displacement, inherited: Inherited) -> Result<Subject, RealizeError> {
         let bounds = self.extents.bounds(recipe.of);
         let tolerance = inherited.tolerance.unwrap_or_else(|| bounds.diagonal() / 2000.0);
-        let share = Inherited { tolerance: Some(tolerance / 4.0), uv: true, ..inherited };
+        let share = Inherited { uv: true, ..inherited.share(tolerance / 4.0, 0.25) };
         let made = self.part(recipe.of, share, &mut 0)?;
         let mut periods = Vec::new();
         super::bent::periods(self.model, recipe.of, &mut periods);
-        let tolerance = tolerance * self.coarser;
+        let tolerance = self.coarsened(tolerance, inherited.level);
         let aim = (tolerance - inherited.rounding).max(tolerance / 2.0);
         let left = (aim - made.deviation.bound).max(aim / 4.0);
         Ok(Subject { made, periods, tolerance, left })
@@ -79,6 +80,7 @@ impl Maker<'_> {
             tolerance: shape.options.tolerance.or(self.model.tolerance),
             rounding: single_rounding(self.extents.bounds(map.shape).reach()),
             uv: true,
+            level: Level::FINEST,
         };
         let Subject { made, .. } = self.subject(recipe, wanted.within(&shape.options.placement))?;
         let bounds = self.extents.bounds(recipe.of);

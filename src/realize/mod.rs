@@ -11,7 +11,9 @@ mod displace;
 mod extents;
 mod facets;
 mod height;
+mod inherited;
 mod leaning;
+mod level;
 mod limit;
 mod material;
 mod morph;
@@ -29,6 +31,7 @@ mod swept;
 mod textured;
 mod window;
 
+pub use level::{level, within_limits};
 pub use normal_map::normal_maps;
 pub use source::{Source, Sources, sources};
 pub use window::Window;
@@ -40,7 +43,7 @@ use crate::geometry::mesh::polygon::PolygonError;
 use crate::geometry::solid::SolidFault;
 use crate::geometry::subdivide::SubdivideFault;
 use crate::geometry::tessellate::{DeformError, TessellateError};
-use crate::model::{Model, ShapeHandle};
+use crate::model::{MaterialHandle, Model, ShapeHandle};
 use crate::scene::Scene;
 
 /// How to realize.
@@ -48,6 +51,42 @@ use crate::scene::Scene;
 pub struct Options {
     /// All tolerances are multiplied by this; 0 means 1.
     pub coarser: f64,
+    /// How much coarser surfaces are besides.
+    pub level: Level,
+}
+
+/// A level of detail. What others are made from (cages, sums of weights) is made as for the finest one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// 0 is the finest. Steps of fixed grids are halved so often, and subdivisions are so many fewer.
+    pub number: u32,
+    /// Tolerances are multiplied by this.
+    pub factor: f64,
+    /// No tolerance is less than this, in the document's unit.
+    pub least: f64,
+}
+
+impl Level {
+    /// What the document describes.
+    pub const FINEST: Self = Self { number: 0, factor: 1.0, least: 0.0 };
+
+    /// A tolerance at this level.
+    #[must_use]
+    pub fn tolerance(&self, finest: f64) -> f64 {
+        (finest * self.factor).max(self.least)
+    }
+
+    /// Steps of a fixed grid at this level; three stay, as around a tube.
+    fn steps(&self, finest: u32) -> u32 {
+        let halved = finest.checked_shr(self.number).unwrap_or(0);
+        halved.max(finest.min(3))
+    }
+}
+
+impl Default for Level {
+    fn default() -> Self {
+        Self::FINEST
+    }
 }
 
 /// Why a shape has no mesh.
@@ -167,6 +206,8 @@ pub struct Realized {
     pub scene: Scene,
     /// For each geometry of the scene, the shape it comes from.
     pub shapes: Vec<ShapeHandle>,
+    /// For each geometry the materials of its origins, before nodes give it others.
+    pub materials: Vec<Vec<Option<MaterialHandle>>>,
     /// Motions that are not within their tolerance.
     pub loose: Vec<Loose>,
     /// Things a person should know, each with its shape.

@@ -99,9 +99,10 @@ fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Mo
             }
             _ => model.shape(*shape).name.clone(),
         };
-        scene.meshes.push(MeshUse { name, geometry, materials: worn });
+        scene.meshes.push(MeshUse { name, geometry, materials: worn, levels: Vec::new() });
     }
     let mut notes = Vec::new();
+    let own = made.iter().map(|(made, _)| made.materials.clone()).collect();
     for ((made, targets), handle) in made.into_iter().zip(shapes) {
         let overrides: Vec<_> =
             shown.iter().filter(|(shape, _)| shape == handle).map(|(_, material)| *material).collect();
@@ -121,7 +122,7 @@ fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Mo
     scene.materials = materials.iter().map(|handle| model.material(*handle).clone()).collect();
     keep_used_images(model, &mut scene);
     scene.nodes = nodes(model, shown);
-    Realized { scene, shapes: shapes.to_vec(), loose: Vec::new(), notes }
+    Realized { scene, shapes: shapes.to_vec(), materials: own, loose: Vec::new(), notes }
 }
 
 fn used_materials(shown: &[Shown], shapes: &[ShapeHandle], made: &[Morphed]) -> Vec<MaterialHandle> {

@@ -3,19 +3,20 @@
 use glam::{DAffine3, DMat3};
 
 use super::extents::Extents;
+use super::inherited::Inherited;
 use super::limit::{self, Cost};
 use super::material::{middle, own_or, show_normals, source_of, split_by_element};
 use super::reach::bent;
 use super::source::source_count;
-use super::{Faces, Note, Options, RealizeError};
+use super::{Faces, Level, Note, Options, RealizeError};
 use crate::geometry::mesh;
 use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
 use crate::geometry::mesh::{Mesh, Vertex, VertexIndex, Wire};
 use crate::geometry::number::{Bounds, single_rounding};
 use crate::geometry::tessellate::{
-    DeformError, Deformed, Detail, Deviation, HeightBound, SurfaceDensity, TessellateError, Tessellation,
-    based_map, cuboid, deform, extrude, field_surface, geodesic, height_map, patchwork, perturbed, plane,
-    quadric, revolve, rounded_box, sheet, sweep, trimmed, two_sided, wire,
+    DeformError, Deformed, Detail, Deviation, Geodesic, HeightBound, SurfaceDensity, TessellateError,
+    Tessellation, based_map, cuboid, deform, extrude, field_surface, geodesic, height_map, patchwork,
+    perturbed, plane, quadric, revolve, rounded_box, sheet, sweep, trimmed, two_sided, wire,
 };
 use crate::model::{Frame, MaterialHandle, Model, Recipe, Shape, ShapeHandle, Smoothing};
 
@@ -37,35 +38,14 @@ pub(super) struct Made {
 /// Makes shapes of one model.
 pub(super) struct Maker<'a> {
     pub(super) model: &'a Model,
-    pub(super) coarser: f64,
+    coarser: f64,
+    level: Level,
     /// How far each shape reaches.
     pub(super) extents: Extents,
     /// Triangles that each shape has at least.
     least: Vec<u64>,
     /// How often cages that are refined for a tolerance are refined at least.
     pub(super) levels: u32,
-}
-
-/// What a shape gets from those that use it, as lengths in the space where it is placed.
-#[derive(Clone, Copy)]
-pub(super) struct Inherited {
-    /// What they ask for, unless it asks for another itself.
-    pub(super) tolerance: Option<f64>,
-    /// What rounding to single precision will add.
-    pub(super) rounding: f64,
-    pub(super) uv: bool,
-}
-
-impl Inherited {
-    /// Behind a map that stretches lengths.
-    pub(super) fn within(self, map: &DAffine3) -> Self {
-        let stretch = stretch(&map.matrix3);
-        Self {
-            tolerance: self.tolerance.map(|tolerance| tolerance / stretch),
-            rounding: self.rounding / stretch,
-            ..self
-        }
-    }
 }
 
 impl Made {
@@ -89,6 +69,7 @@ impl<'a> Maker<'a> {
         Self {
             model,
             coarser,
+            level: options.level,
             extents: super::extents::extents(model),
             least: limit::least_triangles(model),
             levels: 0,
@@ -100,6 +81,11 @@ impl<'a> Maker<'a> {
         Self { levels, ..self }
     }
 
+    /// What a tolerance is in the end.
+    pub(super) fn coarsened(&self, tolerance: f64, level: Level) -> f64 {
+        level.tolerance(tolerance * self.coarser)
+    }
+
     /// The shape in the document's unit, its placement applied. Anchors carry the index that
     /// [`sources`](super::sources) gives to their surface.
     pub(super) fn make(&self, handle: ShapeHandle, uv: bool) -> Result<Made, RealizeError> {
@@ -109,7 +95,8 @@ impl<'a> Maker<'a> {
         }
         let mut first_source = 0;
         let rounding = single_rounding(self.extents.bounds(handle).reach());
-        self.part(handle, Inherited { tolerance: self.model.tolerance, rounding, uv }, &mut first_source)
+        let inherited = Inherited { tolerance: self.model.tolerance, rounding, uv, level: self.level };
+        self.part(handle, inherited, &mut first_source)
     }
 
     pub(super) fn part(
@@ -163,16 +150,16 @@ impl<'a> Maker<'a> {
     fn leaf(
         &self,
         handle: ShapeHandle,
-        Inherited { tolerance, rounding, uv }: Inherited,
+        Inherited { tolerance, rounding, uv, level }: Inherited,
     ) -> Result<Made, RealizeError> {
         let shape = self.model.shape(handle);
         let stretch = stretch(&shape.options.placement.matrix3);
-        let tolerance = self.tolerance(shape, tolerance);
+        let tolerance = self.coarsened(Self::tolerance(shape, tolerance), level);
         // What rounding will add is taken off beforehand, as long as it leaves half.
         let aim = (tolerance - rounding).max(tolerance / 2.0);
         let detail = Detail {
             density: match shape.options.density {
-                Some(grid) => SurfaceDensity::Grid { u: grid.u, v: grid.v },
+                Some(grid) => SurfaceDensity::Grid { u: level.steps(grid.u), v: level.steps(grid.v) },
                 None => SurfaceDensity::Tolerance(aim / stretch),
             },
             crease_angle: match shape.options.smoothing {
@@ -196,7 +183,10 @@ impl<'a> Maker<'a> {
         let made = match &shape.recipe {
             Recipe::Cuboid { size, center } => Ok(cuboid(*size, *center, uv)),
             Recipe::RoundedBox(shape) => rounded_box(shape, &detail),
-            Recipe::Geodesic(ball) => geodesic(ball, &detail),
+            Recipe::Geodesic(ball) => {
+                let frequency = ball.frequency.map(|frequency| (frequency >> level.number).max(1));
+                geodesic(&Geodesic { frequency, ..*ball }, &detail)
+            }
             Recipe::Plane(flat) => plane(flat, &detail),
             Recipe::Revolution(revolution) => revolve(revolution, &detail),
             Recipe::Extrusion(extrusion) => extrude(extrusion, &detail),
@@ -274,12 +264,11 @@ impl<'a> Maker<'a> {
     }
 
     /// Tolerance in the document's unit; where none is written, the diagonal of the placed shape / 2000.
-    fn tolerance(&self, shape: &Shape, written: Option<f64>) -> f64 {
-        let tolerance = written.unwrap_or_else(|| {
+    fn tolerance(shape: &Shape, written: Option<f64>) -> f64 {
+        written.unwrap_or_else(|| {
             let diagonal = super::extents::extent(&shape.recipe).diagonal();
             diagonal * stretch(&shape.options.placement.matrix3) / 2000.0
-        });
-        tolerance * self.coarser
+        })
     }
 
     fn polygons(
@@ -333,13 +322,12 @@ impl<'a> Maker<'a> {
         }
         // Half for the shape itself; what that leaves is for the map.
         let share = Inherited {
-            tolerance: Some(tolerance / (2.0 * stretch)),
             rounding: inherited.rounding / stretch,
-            ..inherited
+            ..inherited.share(tolerance / (2.0 * stretch), 0.5 / stretch)
         };
         let first = *next_source;
         let mut made = self.part(of, share, next_source)?;
-        let tolerance = tolerance * self.coarser;
+        let tolerance = self.coarsened(tolerance, inherited.level);
         let aim = (tolerance - inherited.rounding).max(tolerance / 2.0);
         let before = made.deviation.bound * stretch;
         let left = (aim - before).max(aim / 8.0);

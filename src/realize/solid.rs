@@ -5,8 +5,9 @@
 
 use std::ops::Range;
 
+use super::inherited::Inherited;
 use super::limit::Cost;
-use super::shape::{Inherited, Made, Maker, cost, flatten, join};
+use super::shape::{Made, Maker, cost, flatten, join};
 use super::{RealizeError, bent};
 use crate::geometry::mesh::{self, Mesh, Wire};
 use crate::geometry::solid::{
@@ -239,8 +240,8 @@ impl Work<'_> {
             let bounds = self.maker.extents.bounds(self.recipe.parts[0]);
             bounds.diagonal() / 2000.0
         });
-        let share = Inherited { tolerance: Some(tolerance / 2.0), ..self.inherited };
-        (tolerance * self.maker.coarser, share)
+        let share = self.inherited.share(tolerance / 2.0, 0.5);
+        (self.maker.coarsened(tolerance, self.inherited.level), share)
     }
 
     /// The surface of a part moved by a radius, and its deviation.

@@ -2,9 +2,10 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::inherited::Inherited;
 use super::limit;
-use super::shape::{Inherited, Made, Maker, cost, flatten};
-use super::{Faces, Note, RealizeError};
+use super::shape::{Made, Maker, cost, flatten};
+use super::{Faces, Level, Note, RealizeError};
 use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
 use crate::geometry::mesh::polygon::Face;
 use crate::geometry::mesh::{self, PointIndex, PolygonMesh, Wire};
@@ -25,13 +26,17 @@ impl Maker<'_> {
         next_source: &mut u32,
     ) -> Result<Made, RealizeError> {
         let shape = self.model.shape(handle);
-        let (cage, materials) = self.cage(recipe.cage, inherited)?;
-        let tolerance =
-            inherited.tolerance.unwrap_or_else(|| cage.bounds().diagonal() / 2000.0) * self.coarser;
+        // The surface is that of the cage: a coarser one would be another surface.
+        let finest = Inherited { level: Level::FINEST, ..inherited };
+        let (cage, materials) = self.cage(recipe.cage, finest)?;
+        let tolerance = inherited.tolerance.unwrap_or_else(|| cage.bounds().diagonal() / 2000.0);
+        let tolerance = self.coarsened(tolerance, inherited.level);
         let aim = (tolerance - inherited.rounding).max(tolerance / 2.0);
         let mut options = Options {
             scheme: recipe.scheme,
-            aim: recipe.levels.map_or(Aim::Tolerance(aim), Aim::Levels),
+            aim: recipe.levels.map_or(Aim::Tolerance(aim), |levels| {
+                Aim::Levels(levels.saturating_sub(inherited.level.number))
+            }),
             limit: recipe.limit,
             border_corners: recipe.border_corners,
             creases: recipe.creases.clone(),

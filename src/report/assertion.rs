@@ -25,14 +25,15 @@ pub struct Fault {
 
 impl Report {
     /// The fact at a path of keys with dots between them. A path that is not there is looked for in `totals`,
-    /// and in the one shape of a report with one shape.
+    /// and in the one shape of a report with one shape, whose coarser levels of detail do not count.
     ///
     /// # Errors
     /// When nothing stands at the path.
     pub fn fact(&self, path: &str) -> Result<Value, Fault> {
         let whole = serde_json::to_value(self).unwrap_or(Value::Null);
         let mut roots = vec![&whole];
-        if self.shapes.len() == 1 {
+        let coarser: usize = self.lods.values().map(|levels| levels.len().saturating_sub(1)).sum();
+        if self.shapes.len() == 1 + coarser {
             roots.extend(whole.get("shapes").and_then(|shapes| shapes.as_object()?.values().next()));
         }
         roots.extend(whole.get("totals"));

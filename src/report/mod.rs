@@ -9,6 +9,7 @@ mod deviation;
 pub mod facts;
 mod heights;
 mod joints;
+mod levels;
 mod morphs;
 mod motion;
 mod perturbed;
@@ -20,6 +21,7 @@ pub use assertion::{Check, Fault};
 pub use deviation::{deviation_maps, measure_deviation};
 pub use heights::HeightFacts;
 pub use joints::JointFacts;
+pub use levels::{LevelFacts, LevelOrigin};
 pub use morphs::MorphFacts;
 pub use motion::{ClipFacts, PoseFacts, PosedVertex, ReachFacts, ReachFrame, SkinFacts};
 pub use perturbed::PerturbedFacts;
@@ -61,7 +63,10 @@ pub struct Report {
     pub totals: Totals,
     /// Each shape, by the name of its mesh.
     pub shapes: IndexMap<String, ShapeFacts>,
-    /// Each node, in the order of the file.
+    /// The levels of detail of each mesh that has some.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub lods: IndexMap<String, Vec<LevelFacts>>,
+    /// Each node, in the order of the file; those that only carry a mesh for another are left out.
     pub nodes: Vec<NodeFacts>,
     /// Each skin, by its name.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
@@ -269,10 +274,12 @@ pub fn measure(
     let plain = unpacked(&written.bytes)?;
     let file = read(&plain)?;
     let mut facts = IndexMap::new();
-    for (known, handle) in written.geometries.iter().zip(shapes) {
-        let measured =
-            (about.measure.then(|| measure_deviation(&file.geometries[known.mesh], known, model, *handle)))
-                .flatten();
+    for (index, (known, handle)) in written.geometries.iter().zip(shapes).enumerate() {
+        // Where triangles were taken away, corners say nothing of where on the surface the others belong.
+        let anchored = about.measure && !levels::is_thinned(written, index);
+        let measured = (anchored
+            .then(|| measure_deviation(&file.geometries[known.mesh], known, model, *handle)))
+        .flatten();
         facts.insert(known.name.clone(), shape_facts(&file, known, (model, *handle), measured)?);
     }
     let nodes = nodes(&file);
@@ -290,6 +297,7 @@ pub fn measure(
             blake3: blake3::hash(&written.bytes).to_hex().to_string(),
         },
         totals: totals(&file, &facts, written, &nodes),
+        lods: levels::levels(&file, written, &facts),
         shapes: facts,
         nodes,
         skins,

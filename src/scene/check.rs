@@ -213,7 +213,11 @@ fn check_use(scene: &Scene, mesh: &MeshUse) -> Result<(), SceneError> {
     let mut origins = geometry.mesh.runs.iter().map(|run| run.origin).chain(strands);
     let origins = origins.all(|origin| (origin as usize) < mesh.materials.len());
     let materials = mesh.materials.iter().flatten().all(|material| *material < scene.materials.len());
-    if !origins || !materials {
+    let levels = mesh.levels.iter().all(|level| {
+        scene.meshes.get(level.mesh).is_some_and(|coarser| coarser.materials.len() == mesh.materials.len())
+            && (0.0..=1.0).contains(&level.coverage)
+    });
+    if !origins || !materials || !levels {
         return Err(dangling());
     }
     for strand in &geometry.wire.strands {

@@ -41,6 +41,8 @@ pub struct Scene {
     pub animations: Vec<Animation>,
     /// The grid that all positions lie on, where they are written as whole numbers.
     pub grid: Option<Grid>,
+    /// How coarser levels of meshes stand in the file.
+    pub level_form: LevelForm,
 }
 
 /// A grid of positions.
@@ -87,8 +89,42 @@ pub struct Geometry {
     pub tolerance: Option<f64>,
 }
 
+/// How levels of detail stand in a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LevelForm {
+    /// Beside the nodes, by `MSFT_lod`.
+    #[default]
+    Extension,
+    /// Below the nodes, named `_LOD0`, `_LOD1`...
+    Nodes,
+}
+
+/// A level of detail of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LevelUse {
+    /// Its number; 0 is the finest.
+    pub number: u32,
+    /// Index into [`Scene::meshes`].
+    pub mesh: usize,
+    /// What it was made from.
+    pub source: LevelSource,
+    /// It differs from the exact shape by no more than a pixel where it covers no more than this part of the picture.
+    pub coverage: f64,
+}
+
+/// What a level of detail was made from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LevelSource {
+    /// It is what the document describes.
+    Finest,
+    /// The surfaces, cut more coarsely.
+    Surface,
+    /// The triangles of the level before.
+    Triangles,
+}
+
 /// A geometry shown with materials.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MeshUse {
     /// Its name in the file.
     pub name: String,
@@ -96,6 +132,8 @@ pub struct MeshUse {
     pub geometry: usize,
     /// For each origin of the geometry's runs and strands an index into [`Scene::materials`].
     pub materials: Vec<Option<usize>>,
+    /// Its levels of detail, the finest first: its own, and coarser ones; empty where it has none.
+    pub levels: Vec<LevelUse>,
 }
 
 /// A place in the tree.

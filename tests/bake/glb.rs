@@ -312,6 +312,8 @@ impl Glb {
         let mut parents = vec![0; nodes.len()];
         let scene = &self.list("scenes")[count(&self.json["scene"])];
         let children = nodes.iter().map(|node| &node["children"]).chain([&scene["nodes"]]);
+        // Coarser levels of detail stand in no scene.
+        let children = children.chain(nodes.iter().map(|node| &node["extensions"]["MSFT_lod"]["ids"]));
         for child in children.filter_map(Value::as_array).flatten() {
             parents[count(child)] += 1;
         }

@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use crate::geometry::curve::{AnyCurve, Curve, Side};
+use crate::geometry::mesh::nearest::nearest_of_triangle;
 use crate::geometry::number::Bounds;
 
 use super::skeleton::Potential;
@@ -125,41 +126,6 @@ fn share_of(a: DVec3, b: DVec3, point: DVec3) -> f64 {
     let along = b - a;
     let square = along.length_squared();
     if square > 0.0 { ((point - a).dot(along) / square).clamp(0.0, 1.0) } else { 0.0 }
-}
-
-/// The nearest point of a triangle.
-///
-/// Source: C. Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
-pub(super) fn nearest_of_triangle([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
-    let (ab, ac, ap) = (b - a, c - a, point - a);
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return a;
-    }
-    let bp = point - b;
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return b;
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return a + ab * (d1 / (d1 - d3));
-    }
-    let cp = point - c;
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return c;
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return a + ac * (d2 / (d2 - d6));
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-    }
-    let sum = va + vb + vc;
-    a + ab * (vb / sum) + ac * (vc / sum)
 }
 
 impl Form {

@@ -12,6 +12,7 @@
 pub mod cache;
 pub mod convert;
 pub mod crossing;
+pub mod nearest;
 mod normals;
 pub mod platonic;
 pub mod polygon;
@@ -19,6 +20,7 @@ pub mod polygon_facts;
 pub mod texels;
 pub mod topology;
 mod transform;
+mod tree;
 pub mod triangulate;
 pub mod weld;
 mod wire;

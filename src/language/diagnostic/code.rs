@@ -407,6 +407,10 @@ codes! {
     TornHeights = "K0983";
     /// a normal map cannot be drawn
     NormalMap = "K0984";
+    /// levels of detail that are left out
+    FewerLevels = "K0985";
+    /// tolerances of levels of detail that do not increase
+    BadLevels = "K0986";
     /// a model is too large for a grid of 16 bits
     CoarseGrid = "K0987";
     /// a variant and a profile would be one file

@@ -504,6 +504,12 @@ examples! {
         "[shape.a.displace]\nof = { box = { size = [1, 1, 1] } }\nmap = { formula = { f = \"= 0.1 * x\" } }" => "[shape.a.displace]\nof = { box = { size = [1, 1, 1] } }\nmap = { formula = { f = \"= 0.1 * x\" } }\nprojection = \"y\"";
     NormalMap: "The normals of a shape at full resolution are drawn into a picture over its texture coordinates, so these must lie between 0 and 1 and cover no place twice; and the shape must be shown by itself, with its own material.",
         "[shape.a.displace]\nof = { box = { size = [1, 1, 1] } }\nformula = \"= 0.01 * sin(x * 720)\"\nbake-normal-map = 64" => "[shape.a.displace]\nof = { plane = { size = [1, 1] } }\nformula = \"= 0.01 * sin(x * 720)\"\nbake-normal-map = 64";
+    FewerLevels: "A level of detail has no more than nine tenths of the triangles of the one before, is closed where the shape is, and has as many parts with as many holes. Where the surface cannot be cut so coarsely, triangles of the level before are taken away; where that does not help either, the level is left out, and the shape has fewer than the others.",
+        "[lod]\nlevels = 8\n[shape.a]\nsegments = [64, 32]\n[shape.a.sphere]\nradius = 1" =>
+        "[lod]\nlevels = 4\n[shape.a]\nsegments = [64, 32]\n[shape.a.sphere]\nradius = 1";
+    BadLevels: "`tolerances` of `[lod]` are those of the coarser levels, from the second one on. Each must be greater than the one before.",
+        "[lod]\ntolerances = [0.05, 0.01]\n[shape.a.sphere]\nradius = 1" =>
+        "[lod]\ntolerances = [0.01, 0.05]\n[shape.a.sphere]\nradius = 1";
     CoarseGrid: "Profiles of whole numbers put all positions of a model on one grid with 65536 lines along each axis. Where a model is so large that this would move points further than its tolerance, its positions stay floats of single precision, and the file is larger.",
         "tolerance = 1e-5\n[output]\nprofiles = [\"quantized\"]\n[shape.a.cylinder]\nradius = 0.5\nheight = 1" =>
         "tolerance = 1e-3\n[output]\nprofiles = [\"quantized\"]\n[shape.a.cylinder]\nradius = 0.5\nheight = 1";

@@ -11,6 +11,7 @@ use crate::language::spec::curve::Curve;
 use crate::language::spec::field::FieldDefinition;
 use crate::language::spec::import::Up;
 use crate::language::spec::limit::Limits;
+use crate::language::spec::lod::Lod;
 use crate::language::spec::map::MapDefinition;
 use crate::language::spec::material::Material;
 use crate::language::spec::morph::Morphs;
@@ -38,6 +39,8 @@ pub struct Spec {
     pub asset: Asset,
     /// `[output]`.
     pub output: Output,
+    /// `[lod]`.
+    pub lod: Option<Sp<Lod>>,
     /// `[curve.NAME]`, in the order of the text.
     pub curves: IndexMap<String, Definition<Curve>>,
     /// `[map.NAME]`, in the order of the text.

@@ -26,6 +26,7 @@ mod joined;
 mod kind;
 mod knots;
 mod limit;
+mod lod;
 mod loft;
 mod map;
 mod material;
@@ -104,6 +105,7 @@ pub use knots::KnotRule;
 pub use limit::Limits;
 #[cfg(feature = "cli")]
 pub(crate) use limit::parse_bytes;
+pub use lod::{Lod, LodForm};
 pub use loft::{Across, Loft, LoftEnd, Matching, PlacedProfile, Profile};
 pub use map::{
     Between, Map, MapCombine, MapDefinition, MapFormula, MapGrid, MapImage, MapNoise, MapOperation,

@@ -12,6 +12,7 @@ use crate::language::spec::field::Field;
 use crate::language::spec::import::Up;
 use crate::language::spec::kind::Kinds;
 use crate::language::spec::limit::{LimitFields, Limits};
+use crate::language::spec::lod::Lod;
 use crate::language::spec::map::Map;
 use crate::language::spec::morph::{self, Morphs};
 use crate::language::spec::name::check_name;
@@ -24,7 +25,7 @@ use crate::language::spec::spanned::Sp;
 use crate::language::value::{Data, Entry, Table};
 
 /// Everything that may stand at the top of a document, with what it means.
-pub(crate) const SECTIONS: [(&str, &str); 21] = [
+pub(crate) const SECTIONS: [(&str, &str); 22] = [
     ("unit", "The unit of every length; metres when it is not written."),
     ("up", "The axis that points up; y when it is not written."),
     ("tolerance", "How far meshes may lie from the true surfaces, in the document's unit."),
@@ -32,6 +33,7 @@ pub(crate) const SECTIONS: [(&str, &str); 21] = [
     ("include", "Documents whose definitions belong to this one; paths are relative to this file."),
     ("asset", "Facts about the asset."),
     ("output", "What is written, and for whom."),
+    ("lod", "Levels of detail of all shapes."),
     ("parameters", "Named values for expressions: numbers, booleans, points, strings."),
     ("curve", "Curves, as `[curve.NAME.KIND]`."),
     ("map", "Maps of heights and masks, as `[map.NAME]` and `[map.NAME.KIND]`."),
@@ -71,6 +73,7 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
     let asset = table.get("asset").map(|value| reader.within("asset", |reader| Asset::read(value, reader)));
     let output =
         table.get("output").map(|value| reader.within("output", |reader| Output::read(value, reader)));
+    let lod = table.get("lod").map(|value| reader.within("lod", |reader| Sp::<Lod>::read(value, reader)));
     let limits =
         table.get("limits").map(|value| reader.within("limits", |reader| LimitFields::read(value, reader)));
     let limits =
@@ -96,6 +99,7 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
         motion_tolerance,
         asset,
         output,
+        lod: lod.flatten(),
         curves,
         maps,
         fields,

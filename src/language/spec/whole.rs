@@ -10,6 +10,7 @@ use crate::language::spec::document::{Asset, Output, Unit};
 use crate::language::spec::field::FieldDefinition;
 use crate::language::spec::import::Up;
 use crate::language::spec::limit::LimitFields;
+use crate::language::spec::lod::Lod;
 use crate::language::spec::map::MapDefinition;
 use crate::language::spec::material::Material;
 use crate::language::spec::morph::Morphs;
@@ -77,6 +78,7 @@ fn section(name: &str, schemas: &mut Schemas) -> Json {
         "include" => json!({ "type": "array", "items": { "type": "string" } }),
         "asset" => Asset::schema(schemas),
         "output" => Output::schema(schemas),
+        "lod" => Lod::schema(schemas),
         "parameters" => named(json!({ "type": ["number", "boolean", "array", "string"] })),
         "curve" => named(Curve::schema(schemas)),
         "field" => named(FieldDefinition::schema(schemas)),

@@ -7,6 +7,7 @@
 
 mod accessor;
 mod clip;
+mod level;
 mod mesh;
 mod texture;
 
@@ -58,6 +59,8 @@ pub struct Node {
     pub skin: Option<usize>,
     /// Weights of the targets of its mesh; those of the mesh where empty.
     pub weights: Vec<f64>,
+    /// Nodes that stand for it at coarser levels of detail (`MSFT_lod`).
+    pub levels: Vec<usize>,
 }
 
 /// Where a node stands in its parent.
@@ -231,6 +234,7 @@ pub fn read(bytes: &[u8]) -> Result<Asset, AssetError> {
         notes,
     };
     check_tree(&asset)?;
+    check_levels(&asset)?;
     Ok(asset)
 }
 
@@ -286,6 +290,15 @@ fn check_tree(asset: &Asset) -> Result<(), AssetError> {
     Ok(())
 }
 
+/// That coarser levels are nodes.
+fn check_levels(asset: &Asset) -> Result<(), AssetError> {
+    let beyond = asset.nodes.iter().flat_map(|node| &node.levels).find(|level| **level >= asset.nodes.len());
+    match beyond {
+        Some(node) => Err(AssetError::Document(format!("node {node}, a level of detail, does not exist"))),
+        None => Ok(()),
+    }
+}
+
 fn vector([x, y, z]: [f32; 3]) -> DVec3 {
     DVec3::new(x.into(), y.into(), z.into())
 }
@@ -308,6 +321,7 @@ fn node(own: &gltf::Node<'_>) -> Node {
         mesh: own.mesh().map(|mesh| mesh.index()),
         skin: own.skin().map(|skin| skin.index()),
         weights: own.weights().unwrap_or_default().iter().map(|weight| f64::from(*weight)).collect(),
+        levels: level::levels(own),
     }
 }
 

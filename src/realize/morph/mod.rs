@@ -91,7 +91,7 @@ fn members<'m>(
     make: &Make<'_>,
 ) -> Result<Vec<Member<'m>>, RealizeError> {
     let coarser = if options.coarser > 0.0 { options.coarser } else { 1.0 };
-    let options = Options { coarser: coarser * finer };
+    let options = Options { coarser: coarser * finer, ..*options };
     // What is made finer than it must be is held to what was asked for.
     let held = |mut made: Made| {
         made.tolerance = made.tolerance.map(|tolerance| tolerance / finer);

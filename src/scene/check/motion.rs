@@ -2,7 +2,7 @@
 
 use super::SceneError;
 use crate::motion::{Influences, Path};
-use crate::scene::{Animation, Channel, Scene, Skin};
+use crate::scene::{Animation, Channel, Geometry, Scene, Skin};
 
 pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
     for skin in &scene.skins {
@@ -13,19 +13,26 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
         let dangling = || SceneError::Dangling(format!("node `{}`", node.name));
         let skin = scene.skins.get(skin).ok_or_else(dangling)?;
         let mesh = node.mesh.and_then(|mesh| scene.meshes.get(mesh)).ok_or_else(dangling)?;
-        let geometry = &scene.geometries[mesh.geometry];
-        let fault = |what| SceneError::Skin(skin.name.clone(), what);
-        let influences = geometry.influences.as_ref().ok_or_else(|| fault("a shape without weights"))?;
-        if influences.len() != geometry.mesh.points.len() {
-            return Err(fault("weights for other points than those of its shape"));
-        }
-        if !influences.iter().all(|one| whole(one, skin.joints.len())) {
-            return Err(fault("weights that do not sum to 255, or of joints it does not have"));
+        let levels = mesh.levels.iter().filter_map(|level| scene.meshes.get(level.mesh));
+        for mesh in std::iter::once(mesh).chain(levels) {
+            check_weights(&scene.geometries[mesh.geometry], skin)
+                .map_err(|what| SceneError::Skin(skin.name.clone(), what))?;
         }
     }
     for animation in &scene.animations {
         check_animation(scene, animation)
             .map_err(|what| SceneError::Animation(animation.name.clone(), what))?;
+    }
+    Ok(())
+}
+
+fn check_weights(geometry: &Geometry, skin: &Skin) -> Result<(), &'static str> {
+    let influences = geometry.influences.as_ref().ok_or("a shape without weights")?;
+    if influences.len() != geometry.mesh.points.len() {
+        return Err("weights for other points than those of its shape");
+    }
+    if !influences.iter().all(|one| whole(one, skin.joints.len())) {
+        return Err("weights that do not sum to 255, or of joints it does not have");
     }
     Ok(())
 }
