@@ -1,6 +1,7 @@
 //! The pipeline, one line a stage.
 
 mod assertion;
+mod collider;
 mod file;
 mod lod;
 mod motion;
@@ -230,6 +231,11 @@ impl Made<'_> {
         }
         realize::normal_maps(&built.model, &mut scene, &shapes).map_err(|errors| refusals(built, errors))?;
         lod::settle(&mut scene, &mut shapes);
+        // What encloses a shape encloses its written places.
+        let coarser = realize::Options { coarser: 1.0 - share, ..realize::Options::default() };
+        let colliders = realize::colliders(&built.model, &coarser, &shapes, &scene);
+        scene.colliders = colliders.map_err(|errors| refusals(built, errors))?;
+        collider::hold(&mut scene, spec.output.colliders);
         let scenes = lod::files(scene, spec.lod.as_ref().map(|lod| &lod.value));
         let file =
             |(level, scene)| self.file(scene, &shapes, (profile, level), std::mem::take(&mut warnings));
@@ -347,8 +353,8 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
     if let RealizeError::Subdivide { shape, cage, fault } = error {
         return subdivide::refused(built, *shape, *cage, fault);
     }
-    if let Some(report) = motion::refused(built, shape, error).or_else(|| state::refused(built, shape, error))
-    {
+    let known = || motion::refused(built, shape, error).or_else(|| state::refused(built, shape, error));
+    if let Some(report) = collider::refused(built, error).or_else(known) {
         return report;
     }
     let name = &built.model.shape(shape).name;
@@ -421,6 +427,7 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
         RealizeError::Deform(_) => {
             (Code::NoLength, "write another `axis`, or `from` and `to` inside the shape")
         }
+        RealizeError::FlatCollider { .. } => (Code::FlatCollider, "see its collider"),
         RealizeError::Unweighted { .. } | RealizeError::SkinnedWire { .. } => {
             (Code::Unweighted, "see its skin")
         }
@@ -505,7 +512,9 @@ fn unwritable(error: &SceneError, built: &Built) -> Diagnostic {
         SceneError::NoArea(name) | SceneError::NoLength(name) => (Code::NoArea, named(name)),
         SceneError::TexturedWire(name, _) => (Code::TexturedWire, named(name)),
         SceneError::NoUv(name, _) => (Code::Conflict, named(name)),
-        SceneError::Animation(..) | SceneError::Skin(..) => (Code::NotFinite, None),
+        SceneError::Animation(..) | SceneError::Skin(..) | SceneError::Collider(..) => {
+            (Code::NotFinite, None)
+        }
         SceneError::Morph(name, ..) => (Code::NotFinite, named(name)),
         SceneError::NotFinite(name) | SceneError::NotUnit(name, _) => (Code::NotFinite, named(name)),
         _ => (Code::NothingToShow, None),

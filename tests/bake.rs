@@ -4,6 +4,7 @@
 
 mod accuracy;
 mod bevels;
+mod colliders;
 mod coons;
 mod deformations;
 mod determinism;

@@ -9,6 +9,7 @@ mod bezier_triangle;
 mod bspline;
 mod carry;
 mod clip;
+mod collider;
 mod conic;
 mod coons;
 mod course;
@@ -88,6 +89,8 @@ pub struct Built {
     pub morph_places: Vec<Span>,
     /// The shapes by their names in the document.
     pub shapes: IndexMap<String, ShapeHandle>,
+    /// Where each collider is defined, by its index.
+    pub collider_places: Vec<Span>,
     /// What a person should know though nothing is wrong.
     pub warnings: Vec<Diagnostic>,
 }
@@ -154,6 +157,8 @@ struct Builder<'a> {
     clip_places: Vec<Span>,
     /// Where each state of a shape is defined.
     morph_places: Vec<Span>,
+    /// Where each collider is defined.
+    collider_places: Vec<Span>,
     reports: Vec<Diagnostic>,
     shapes: IndexMap<String, Option<ShapeHandle>>,
     materials: IndexMap<String, Option<MaterialHandle>>,
@@ -182,6 +187,7 @@ impl<'a> Builder<'a> {
             clips: Vec::new(),
             morphs: Vec::new(),
             states: Vec::new(),
+            colliders: Vec::new(),
             motion_tolerance: spec.motion_tolerance.map(|tolerance| tolerance.value * spec.unit.metres()),
             paths: Vec::new(),
             limits: Limits {
@@ -200,6 +206,7 @@ impl<'a> Builder<'a> {
             skin_places: Vec::new(),
             clip_places: Vec::new(),
             morph_places: Vec::new(),
+            collider_places: Vec::new(),
             reports: Vec::new(),
             shapes: IndexMap::new(),
             materials: IndexMap::new(),
@@ -237,16 +244,28 @@ impl<'a> Builder<'a> {
         self.skins();
         self.morphs(states);
         self.clips();
+        self.colliders();
     }
 
     fn finish(self) -> Result<Built, Vec<Diagnostic>> {
-        let Self { model, places, faces, skin_places, clip_places, morph_places, reports, shapes, .. } = self;
+        let Self { model, places, faces, skin_places, clip_places, .. } = self;
+        let Self { morph_places, collider_places, reports, shapes, .. } = self;
         if reports.iter().any(|report| report.severity == Severity::Error) {
             return Err(reports);
         }
         let shapes = shapes.into_iter().filter_map(|(name, handle)| Some((name, handle?))).collect();
         let warnings = reports;
-        Ok(Built { model, places, faces, skin_places, clip_places, morph_places, shapes, warnings })
+        Ok(Built {
+            model,
+            places,
+            faces,
+            skin_places,
+            clip_places,
+            morph_places,
+            collider_places,
+            shapes,
+            warnings,
+        })
     }
 
     fn report(&mut self, diagnostic: Diagnostic) {

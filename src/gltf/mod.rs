@@ -7,6 +7,7 @@
 
 mod buffer;
 mod carrier;
+mod collider;
 mod lines;
 mod material;
 mod morph;

@@ -13,13 +13,13 @@ use thiserror::Error;
 use super::buffer::{Binary, Content, Elements, at, index_accessors, index_width};
 use super::position::positions;
 use super::profile::Profile;
-use super::{carrier, lines, material, morph, motion};
+use super::{carrier, collider, lines, material, morph, motion};
 use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
 use crate::geometry::number::{floor_count, size};
 use crate::geometry::tessellate::Deviation;
 use crate::packing::{exponential, octahedral, signed_byte};
-use crate::scene::{Checked, Geometry, Grid, LevelUse};
+use crate::scene::{Checked, Collider, Geometry, Grid, LevelUse};
 
 /// The bytes of a file and what only its writer knows of them.
 #[derive(Clone, Debug)]
@@ -30,6 +30,8 @@ pub struct Written {
     pub geometries: Vec<WrittenGeometry>,
     /// For each animation what is known of it.
     pub animations: Vec<WrittenAnimation>,
+    /// Bodies for physics.
+    pub colliders: Vec<Collider>,
     /// The levels of detail of each mesh that has some, the finest first.
     pub levels: Vec<Vec<WrittenLevel>>,
 }
@@ -163,7 +165,13 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
         |level: &LevelUse| WrittenLevel { level: *level, geometry: scene.meshes[level.mesh].geometry };
     let levels = scene.meshes.iter().filter(|mesh| !mesh.levels.is_empty());
     let levels = levels.map(|mesh| mesh.levels.iter().map(written).collect()).collect();
-    Ok(Written { bytes: writer.finish()?, geometries, animations, levels })
+    Ok(Written {
+        bytes: writer.finish()?,
+        geometries,
+        animations,
+        colliders: scene.colliders.clone(),
+        levels,
+    })
 }
 
 /// The extension that allows attributes of whole numbers.
@@ -316,12 +324,17 @@ impl Writer {
             };
             scene.nodes.iter().enumerate().filter_map(of).collect()
         };
+        let mut bodies = collider::write(&mut self.root, &mut self.binary, scene);
         for (index, node) in scene.nodes.iter().enumerate() {
             let mut below = children(Some(index));
             below.extend(carrier::below(scene, carriers, index));
             let mesh = node.mesh.filter(|_| !carrier::is_relieved(carriers, index));
             let told = mesh.map(|mesh| carrier::told(scene, carriers, (index, mesh)));
-            let (extensions, levels) = told.unwrap_or_default();
+            let (mut extensions, levels) = told.unwrap_or_default();
+            let body = std::mem::take(&mut bodies[index]);
+            if !body.extensions.is_empty() {
+                extensions.get_or_insert_default().others.extend(body.extensions);
+            }
             let plain = |vector: glam::DVec3, rest: glam::DVec3| {
                 (vector != rest).then(|| vector.as_vec3().to_array())
             };
@@ -329,9 +342,9 @@ impl Writer {
                 camera: None,
                 children: (!below.is_empty()).then_some(below),
                 extensions,
-                extras: node.socket.then(motion::socket).flatten().or(levels),
+                extras: extras(node, levels, body.extras),
                 matrix: None,
-                mesh: mesh.map(at),
+                mesh: mesh.or(body.mesh).map(at),
                 name: Some(node.name.clone()),
                 rotation: (node.rotation != glam::DQuat::IDENTITY)
                     .then(|| UnitQuaternion(node.rotation.as_quat().to_array())),
@@ -374,6 +387,20 @@ impl Writer {
         bytes.splice(0..0, head);
         Ok(bytes)
     }
+}
+
+/// What stands in the extras of a node.
+fn extras(
+    node: &crate::scene::Node,
+    levels: gltf::json::Extras,
+    colliders: Option<serde_json::Value>,
+) -> gltf::json::Extras {
+    let own = node.socket.then(motion::socket).flatten().or(levels);
+    let Some(colliders) = colliders else { return own };
+    let mut all: serde_json::Map<String, serde_json::Value> =
+        own.and_then(|own| serde_json::from_str(own.get()).ok()).unwrap_or_default();
+    all.insert("colliders".to_owned(), colliders);
+    serde_json::value::to_raw_value(&all).ok()
 }
 
 pub(super) fn put<const N: usize>(bytes: &mut Vec<u8>, numbers: [f32; N]) {

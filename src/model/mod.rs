@@ -4,6 +4,7 @@
 //! the text it came from; handles always point at what exists, and a recipe refers only to shapes before it,
 //! so there is no cycle. Lengths are in the document's unit; [`Model::frame`] turns and scales them to glTF.
 
+mod collider;
 mod deform;
 mod displace;
 mod material;
@@ -12,6 +13,7 @@ mod shape;
 mod solid;
 mod subdivide;
 
+pub use collider::{Collider, Fit};
 pub use deform::{AxialBending, Bending, PathBending};
 pub use displace::{Displacement, Heights, Projection};
 pub use material::NormalMap;
@@ -136,6 +138,8 @@ pub struct Model {
     pub states: Vec<Self>,
     /// Motions.
     pub clips: Vec<Clip>,
+    /// Bodies for physics.
+    pub colliders: Vec<Collider>,
     /// How far vertices may be from exact motions for clips that do not say, metres.
     pub motion_tolerance: Option<f64>,
     /// Paths, for the report of their joints.

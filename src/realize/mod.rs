@@ -6,6 +6,7 @@
 
 mod bent;
 mod cloud;
+mod collider;
 mod deformation;
 mod displace;
 mod extents;
@@ -31,6 +32,7 @@ mod swept;
 mod textured;
 mod window;
 
+pub use collider::colliders;
 pub use level::{level, within_limits};
 pub use normal_map::normal_maps;
 pub use source::{Source, Sources, sources};
@@ -159,6 +161,12 @@ pub enum RealizeError {
         state: String,
         /// Why.
         error: Box<Self>,
+    },
+    /// A collider without volume.
+    #[error("its points lie on one plane")]
+    FlatCollider {
+        /// Index of the collider.
+        collider: usize,
     },
     /// Lines have no weights.
     #[error("it has lines, and joints carry triangles alone")]

@@ -5,6 +5,7 @@
 //! run to run, and no number depends on the machine or on the number of threads.
 
 mod assertion;
+mod colliders;
 mod deviation;
 pub mod facts;
 mod heights;
@@ -18,6 +19,7 @@ mod quadrics;
 mod surfaces;
 
 pub use assertion::{Check, Fault};
+pub use colliders::ColliderFacts;
 pub use deviation::{deviation_maps, measure_deviation};
 pub use heights::HeightFacts;
 pub use joints::JointFacts;
@@ -74,6 +76,9 @@ pub struct Report {
     /// Each clip, by its name.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub clips: IndexMap<String, ClipFacts>,
+    /// Each body for physics, by its name.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub colliders: IndexMap<String, ColliderFacts>,
     /// The joints of each path of the document.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub paths: IndexMap<String, Vec<JointFacts>>,
@@ -302,6 +307,7 @@ pub fn measure(
         nodes,
         skins,
         clips,
+        colliders: colliders::colliders(&file, written),
         paths: joints::joints(model),
         quadrics: quadrics::quadrics(model),
         heights: heights::heights(&file, written, model, shapes)?,

@@ -8,7 +8,7 @@ mod motion;
 
 use crate::geometry::mesh::VertexIndex;
 
-use super::{Geometry, MeshUse, Node, Scene};
+use super::{Collider, Geometry, MeshUse, Node, Scene};
 
 /// A scene that holds what glTF demands. Made only by [`check`].
 #[derive(Clone, Copy, Debug)]
@@ -77,6 +77,9 @@ pub enum SceneError {
     /// A motion cannot be written.
     #[error("clip `{0}` has {1}")]
     Animation(String, &'static str),
+    /// A collider is not finite, or without extent.
+    #[error("collider `{0}` has a size or a place that is beyond single precision")]
+    Collider(String),
     /// A node's transform is not finite, or its rotation not of unit length.
     #[error("node `{0}` has a transform that glTF cannot hold")]
     Transform(String),
@@ -101,8 +104,23 @@ pub fn check(scene: &Scene) -> Result<Checked<'_>, SceneError> {
     for (index, node) in scene.nodes.iter().enumerate() {
         check_node(scene, index, node)?;
     }
+    scene.colliders.iter().try_for_each(|collider| check_collider(scene, collider))?;
     motion::check(scene)?;
     Ok(Checked { scene })
+}
+
+fn check_collider(scene: &Scene, collider: &Collider) -> Result<(), SceneError> {
+    let nodes = [Some(collider.node), collider.holder];
+    if nodes.into_iter().flatten().any(|node| node >= scene.nodes.len()) {
+        return Err(SceneError::Dangling(format!("collider `{}`", collider.name)));
+    }
+    let placed = collider.translation.abs().max_element() <= f64::from(f32::MAX);
+    let turned = (collider.rotation.length_squared() - 1.0).abs() < 1e-6;
+    if placed && turned && collider.body.is_sound() {
+        Ok(())
+    } else {
+        Err(SceneError::Collider(collider.name.clone()))
+    }
 }
 
 fn check_geometry(geometry: &Geometry) -> Result<(), SceneError> {

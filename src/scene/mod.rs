@@ -4,10 +4,12 @@
 //! [`Checked`], which every writer demands. Not promised of an unchecked scene: anything.
 
 pub mod check;
+mod collider;
 mod morph;
 mod motion;
 
 pub use check::{Checked, SceneError};
+pub use collider::{Body, Collider, ColliderForm};
 pub use morph::MorphTarget;
 pub use motion::{Animation, Channel, Skin};
 
@@ -39,6 +41,10 @@ pub struct Scene {
     pub skins: Vec<Skin>,
     /// Motions.
     pub animations: Vec<Animation>,
+    /// Bodies for physics.
+    pub colliders: Vec<Collider>,
+    /// How they stand in the file.
+    pub collider_form: ColliderForm,
     /// The grid that all positions lie on, where they are written as whole numbers.
     pub grid: Option<Grid>,
     /// How coarser levels of meshes stand in the file.

@@ -12,6 +12,7 @@
 
 mod carry;
 mod check;
+mod enclose;
 mod group;
 mod half;
 mod open;
@@ -28,6 +29,7 @@ mod engine;
 mod tests;
 
 pub use check::Check;
+pub use enclose::{Round, enclosing_capsule, enclosing_cylinder, enclosing_hull, enclosing_radius};
 pub use half::{HalfSpace, half_space};
 pub use open::cut_open;
 pub use round::{MOST_SWEPT, offset};

@@ -422,6 +422,11 @@ codes! {
     BadMorph = "K0990";
     /// weights of one mesh that step and run at once
     MixedWeights = "K0991";
+
+    /// a collider that belongs to no node
+    ColliderPlace = "K0994";
+    /// a collider without volume
+    FlatCollider = "K0995";
 }
 
 impl serde::Serialize for Code {

@@ -525,4 +525,10 @@ examples! {
     MixedWeights: "All weights of a mesh are one track of a file, which jumps from key to key or runs straight. In a clip the weights of a node do one or the other.",
         "[shape.a.box]\nsize = [1, 1, 1]\n[shape.b.box]\nsize = [1, 2, 1]\n[shape.c.box]\nsize = [2, 1, 1]\n[morph.a.high]\nshape = \"b\"\n[morph.a.wide]\nshape = \"c\"\n[[clip.c.track]]\nmorph = \"a.high\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 1 }]\n[[clip.c.track]]\nmorph = \"a.wide\"\nbetween = \"step\"\nkeys = [{ at = 0, value = 0 }, { at = 0.5, value = 1 }]" =>
         "[shape.a.box]\nsize = [1, 1, 1]\n[shape.b.box]\nsize = [1, 2, 1]\n[shape.c.box]\nsize = [2, 1, 1]\n[morph.a.high]\nshape = \"b\"\n[morph.a.wide]\nshape = \"c\"\n[[clip.c.track]]\nmorph = \"a.high\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 1 }]\n[[clip.c.track]]\nmorph = \"a.wide\"\nkeys = [{ at = 0.499, value = 0 }, { at = 0.5, value = 1 }]";
+    ColliderPlace: "A collider belongs to the nodes that show its shape. One for a shape that no node shows, such as a simple stand-in for another shape, says with `node` where it belongs.",
+        "[shape.a.sphere]\nradius = 1\n[shape.b.box]\nsize = [1, 1, 1]\n[node.n]\nshape = \"a\"\n[collider.c]\nshape = \"b\"" =>
+        "[shape.a.sphere]\nradius = 1\n[shape.b.box]\nsize = [1, 1, 1]\n[node.n]\nshape = \"a\"\n[collider.c]\nshape = \"b\"\nnode = \"n\"";
+    FlatCollider: "A body that things bounce off encloses a volume. A flat shape has none: a thin box in its place serves better.",
+        "[shape.a.disk]\nradius = 1\n[collider.c]\nshape = \"a\"" =>
+        "[shape.a.cylinder]\nradius = 1\nheight = 0.02\n[collider.c]\nshape = \"a\"";
 }

@@ -6,6 +6,7 @@ use crate::language::source::Span;
 use crate::language::spec::assertion::Assertion;
 use crate::language::spec::check::Check;
 use crate::language::spec::clip::Clip;
+use crate::language::spec::collider::{Collider, ColliderForm};
 use crate::language::spec::construct::{choices, table};
 use crate::language::spec::curve::Curve;
 use crate::language::spec::field::FieldDefinition;
@@ -61,6 +62,8 @@ pub struct Spec {
     pub morphs: IndexMap<String, Definition<Morphs>>,
     /// `[clip.NAME]`, in the order of the text.
     pub clips: IndexMap<String, Definition<Clip>>,
+    /// `[collider.NAME]`, in the order of the text.
+    pub colliders: IndexMap<String, Definition<Collider>>,
     /// The shapes that a document without nodes shows: those that no other definition uses.
     pub roots: Vec<String>,
     /// `[assert]`.
@@ -115,6 +118,8 @@ table! {
     "output" pub Output {
         /// One file for each of them; `["core"]` when it is not written.
         profiles: Option<Sp<Vec<Sp<OutputProfile>>>> => Check::items(1);
+        /// How colliders stand in files.
+        colliders: ColliderForm = ColliderForm::Extras;
     }
 }
 

@@ -6,6 +6,7 @@ mod bezier_triangle;
 mod bspline;
 mod check;
 mod clip;
+mod collider;
 mod combine;
 mod conic;
 mod construct;
@@ -82,6 +83,7 @@ pub use clip::{
     AngleOrder, Between as KeyBetween, Clip, ClipEvent, ClipTrack, Direction, Formulas, KeyValue, LimitRule,
     MotionImport, MotionKey, MotionPath, RotationWay,
 };
+pub use collider::{Collider, ColliderFit, ColliderForm};
 pub use combine::{Array, Copy, Group, Mirror, Plane};
 pub use conic::{Conic, ConicForm, Hyperbola, Parabola};
 pub use coons::{Coons, CoonsBlend, CoonsSide, CoonsSideFields, CoonsTwist, Cross, Gordon, GordonBlend};

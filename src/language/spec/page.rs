@@ -180,7 +180,11 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
             "event",
         ],
     ),
-    ("Facts, outputs, assertions and limits", "", &["asset", "output", "lod", "bounds", "limits"]),
+    (
+        "Facts, outputs, assertions and limits",
+        "",
+        &["asset", "output", "lod", "collider", "bounds", "limits"],
+    ),
 ];
 
 /// The reference page of the language, as Markdown.

@@ -36,11 +36,13 @@ pub enum Family {
     Morph,
     /// `[clip.NAME]`.
     Clip,
+    /// `[collider.NAME]`.
+    Collider,
 }
 
 impl Family {
     /// All families.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Curve,
         Self::Map,
         Self::Field,
@@ -51,6 +53,7 @@ impl Family {
         Self::Skin,
         Self::Morph,
         Self::Clip,
+        Self::Collider,
     ];
 
     /// The word of headers and messages.
@@ -67,6 +70,7 @@ impl Family {
             Self::Skin => "skin",
             Self::Morph => "morph",
             Self::Clip => "clip",
+            Self::Collider => "collider",
         }
     }
 }

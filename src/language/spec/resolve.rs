@@ -59,9 +59,11 @@ pub(crate) fn resolve(names: &Names, deepest: u32, reader: &mut Reader<'_>) -> V
     let by = |one: &Use, family: Family| {
         one.user.as_ref().filter(|user| user.0 == family).map(|user| user.1.clone())
     };
-    // A skin or a morph moves a shape, which is shown all the same.
-    let moves =
-        |one: &Use| by(one, Family::Skin).is_some() || by(one, Family::Morph).as_ref() == Some(&one.name);
+    // A skin or a morph moves a shape, and a collider stands for one, which is shown all the same.
+    let moves = |one: &Use| {
+        let beside = [Family::Skin, Family::Collider].into_iter().any(|family| by(one, family).is_some());
+        beside || by(one, Family::Morph).as_ref() == Some(&one.name)
+    };
     let states: BTreeSet<&str> =
         (shapes.iter().filter(|one| by(one, Family::Morph).is_some() && !moves(one)))
             .map(|one| one.name.as_str())

@@ -6,6 +6,7 @@ use crate::language::diagnostic::{Code, Diagnostic, Severity};
 use crate::language::source::{SourceMap, Span};
 use crate::language::spec::assertion::read_assertions;
 use crate::language::spec::check::Check;
+use crate::language::spec::collider::ColliderForm;
 use crate::language::spec::curve::Curve;
 use crate::language::spec::document::{Asset, Definition, Output, Spec, Unit};
 use crate::language::spec::field::Field;
@@ -25,7 +26,7 @@ use crate::language::spec::spanned::Sp;
 use crate::language::value::{Data, Entry, Table};
 
 /// Everything that may stand at the top of a document, with what it means.
-pub(crate) const SECTIONS: [(&str, &str); 22] = [
+pub(crate) const SECTIONS: [(&str, &str); 23] = [
     ("unit", "The unit of every length; metres when it is not written."),
     ("up", "The axis that points up; y when it is not written."),
     ("tolerance", "How far meshes may lie from the true surfaces, in the document's unit."),
@@ -45,6 +46,7 @@ pub(crate) const SECTIONS: [(&str, &str); 22] = [
     ("skin", "Shapes that joints carry, as `[skin.NAME]`."),
     ("morph", "States of shapes, as `[morph.SHAPE.TARGET]`."),
     ("clip", "Motions, as `[clip.NAME]` and `[[clip.NAME.track]]`."),
+    ("collider", "Bodies that physics engines take for shapes, as `[collider.NAME]`."),
     (
         "variant",
         "Partial documents, as `[variant.NAME]`: each is laid over this one and bakes one more asset.",
@@ -88,10 +90,11 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
     let skins = family(Family::Skin, &[], table, &mut reader);
     let morphs = morphs(table, &mut reader);
     let clips = family(Family::Clip, &[], table, &mut reader);
+    let colliders = family(Family::Collider, &[], table, &mut reader);
     let asserts = table.get("assert").map(|value| read_assertions(value, &mut reader)).unwrap_or_default();
     let roots = resolve(&Names::of(table), limits.recursion, &mut reader);
     let asset = asset.flatten().unwrap_or(Asset { name: None, description: None });
-    let output = output.flatten().unwrap_or(Output { profiles: None });
+    let output = output.flatten().unwrap_or(Output { profiles: None, colliders: ColliderForm::Extras });
     let spec = Spec {
         unit,
         up,
@@ -110,6 +113,7 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
         skins,
         morphs,
         clips,
+        colliders,
         roots,
         asserts,
         limits,

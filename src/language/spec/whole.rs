@@ -5,6 +5,7 @@ use serde_json::{Map, Value as Json, json};
 use crate::language::spec::assertion;
 use crate::language::spec::check::Check;
 use crate::language::spec::clip::Clip;
+use crate::language::spec::collider::Collider;
 use crate::language::spec::curve::Curve;
 use crate::language::spec::document::{Asset, Output, Unit};
 use crate::language::spec::field::FieldDefinition;
@@ -90,6 +91,7 @@ fn section(name: &str, schemas: &mut Schemas) -> Json {
         "skin" => named(Skin::schema(schemas)),
         "morph" => named(Morphs::schema(schemas)),
         "clip" => named(Clip::schema(schemas)),
+        "collider" => named(Collider::schema(schemas)),
         "assert" => assertion::schema(schemas),
         "limits" => LimitFields::schema(schemas),
         _ => named(variant(schemas)),
