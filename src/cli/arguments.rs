@@ -84,6 +84,10 @@ pub(crate) enum Command {
     Explain(Explain),
     /// Write a commented document to start from
     New(New),
+    /// Tell what differs between two models: facts, distance, pictures
+    ///
+    /// Exit codes: 0 the same bytes, 1 they differ, 2 wrong usage, 3 they cannot be compared.
+    Diff(Diff),
     /// Print what is in a .glb file
     Inspect(Inspect),
     /// Look after the folder of what was baked before
@@ -355,6 +359,34 @@ pub(crate) struct New {
 pub(crate) struct Inspect {
     /// The file
     pub(crate) file: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Diff {
+    /// A document, a .glb file, or REVISION:PATH for either as it stood in a revision of git
+    #[arg(value_name = "A")]
+    pub(crate) one: String,
+    /// The same, of what it became
+    #[arg(value_name = "B")]
+    pub(crate) other: String,
+    /// Write a picture of both side by side (.png), or a page with all that changed (.html)
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// From where they are seen: a name or AZIMUTH,ELEVATION in degrees, as for `render`
+    #[arg(long, value_name = "VIEW", default_value = "corner", allow_hyphen_values = true, value_parser = view)]
+    pub(crate) view: View,
+    /// Pixels of each picture
+    #[arg(long, value_name = "N|WIDTHxHEIGHT", default_value = "512", value_parser = pixels)]
+    pub(crate) size: (u32, u32),
+    /// The folder that documents may not read outside of [default: the working directory]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) root: Option<PathBuf>,
+    /// The variant of the documents
+    #[arg(long, value_name = "NAME")]
+    pub(crate) variant: Option<String>,
+    /// Set a parameter of the documents
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub(crate) set: Vec<(String, String)>,
 }
 
 #[derive(Debug, Args)]

@@ -18,20 +18,28 @@ pub(crate) fn run(inspect: &Inspect, printer: &Printer) -> Outcome {
             return Outcome::Files;
         }
     };
-    let plain = match unpacked(&bytes) {
-        Ok(plain) => plain,
-        Err(error) => {
-            printer.failure(&format!("{}: {error}", inspect.file.display()), None);
+    let mut object = match facts(&bytes) {
+        Ok(object) => object,
+        Err(message) => {
+            printer.failure(&format!("{}: {message}", inspect.file.display()), None);
             return Outcome::Errors;
         }
     };
-    let file = match gltf::read(&plain) {
-        Ok(file) => file,
-        Err(error) => {
-            printer.failure(&format!("{}: {error}", inspect.file.display()), None);
-            return Outcome::Errors;
+    object["file"] = Value::from(inspect.file.display().to_string());
+    match printer.format {
+        Format::Json => printer.raw(&format!("{object}\n")),
+        Format::Text | Format::Github => {
+            let text = serde_json::to_string_pretty(&object).unwrap_or_default();
+            printer.raw(&format!("{text}\n"));
         }
-    };
+    }
+    Outcome::Good
+}
+
+/// What is in the bytes of a file, as an object; or why they cannot be read.
+pub(super) fn facts(bytes: &[u8]) -> Result<Value, String> {
+    let plain = unpacked(bytes).map_err(|error| error.to_string())?;
+    let file = gltf::read(&plain).map_err(|error| error.to_string())?;
     let mut meshes = serde_json::Map::new();
     for (index, geometry) in file.geometries.iter().enumerate() {
         let name = file.root.meshes[index].name.clone().unwrap_or_else(|| format!("mesh {index}"));
@@ -44,22 +52,13 @@ pub(crate) fn run(inspect: &Inspect, printer: &Printer) -> Outcome {
         }
         meshes.insert(name, facts);
     }
-    let object = json!({
-        "file": inspect.file.display().to_string(),
+    Ok(json!({
         "bytes": bytes.len(),
-        "blake3": blake3::hash(&bytes).to_hex().to_string(),
+        "blake3": blake3::hash(bytes).to_hex().to_string(),
         "generator": file.root.asset.generator,
         "nodes": file.root.nodes.len(),
         "materials": file.root.materials.len(),
         "images": file.root.images.len(),
         "meshes": meshes,
-    });
-    match printer.format {
-        Format::Json => printer.raw(&format!("{object}\n")),
-        Format::Text | Format::Github => {
-            let text = serde_json::to_string_pretty(&object).unwrap_or_default();
-            printer.raw(&format!("{text}\n"));
-        }
-    }
-    Outcome::Good
+    }))
 }

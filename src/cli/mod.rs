@@ -9,6 +9,7 @@ mod cache;
 mod check;
 mod dependencies;
 mod describe;
+mod diff;
 mod format;
 mod inspect;
 mod output;
@@ -77,6 +78,7 @@ pub fn run() -> ExitCode {
         Command::Reference => describe::reference(&printer),
         Command::Explain(explain) => describe::explain(&explain, &printer),
         Command::New(new) => starter::run(&new, &printer),
+        Command::Diff(diff) => diff::run(&diff, &printer),
         Command::Inspect(inspect) => inspect::run(&inspect, &printer),
         Command::Cache(command) => cache::run(&command, &printer),
         Command::Completions(completions) => describe::completions(&completions),

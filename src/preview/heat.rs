@@ -22,6 +22,8 @@ use crate::geometry::number::{floor_index, in_fan, single};
 pub enum Heat {
     /// Distance from the true surface, which a file does not hold.
     Deviation,
+    /// Distance from another surface, which is given.
+    Distance,
     /// The greater of the principal curvatures, without sign.
     Curvature,
     /// How unequally texture coordinates stretch the picture: the greater stretch over the lesser.
@@ -84,6 +86,7 @@ impl Heat {
     pub fn title(&self) -> String {
         match self {
             Self::Deviation => "deviation, m".to_owned(),
+            Self::Distance => "distance, m".to_owned(),
             Self::Curvature => "curvature, 1/m".to_owned(),
             Self::UvStretch => "uv stretch".to_owned(),
             Self::TexelDensity => "texels/m".to_owned(),
@@ -116,7 +119,7 @@ impl HeatMap {
             for (number, corners) in part.triangles.iter().enumerate() {
                 let triangle = values.len();
                 values.push(match heat {
-                    Heat::Deviation => {
+                    Heat::Deviation | Heat::Distance => {
                         let measured = deviations.get(mesh).and_then(Option::as_ref);
                         let found = measured.and_then(|measured| measured.get(own.before + number));
                         found.map_or(Values::None, |found| turned(*found, stage, triangle, corners))
@@ -132,12 +135,20 @@ impl HeatMap {
         Self::scaled(heat, values, asset)
     }
 
+    /// Numbers that are known: for each triangle of a stage those at its places, and those of the first and last color. A
+    /// triangle whose numbers are none (NaN) is gray.
+    #[must_use]
+    pub fn of(values: Measured, (low, high): (f64, f64)) -> Self {
+        let value = |value: [f32; 13]| if value[12].is_nan() { Values::None } else { Values::Places(value) };
+        Self { values: values.into_iter().map(value).collect(), low, high, greatest: high }
+    }
+
     fn scaled(heat: &Heat, values: Vec<Values>, asset: &Asset) -> Result<Self, HeatError> {
         let mut all: Vec<f32> =
             values.iter().filter_map(Values::greatest).filter(|value| value.is_finite()).collect();
         if all.is_empty() {
             return Err(match heat {
-                Heat::Deviation => HeatError::NoSurface,
+                Heat::Deviation | Heat::Distance => HeatError::NoSurface,
                 Heat::UvStretch => HeatError::NoUv,
                 Heat::TexelDensity => HeatError::NoTexture,
                 Heat::Weights(joint) => HeatError::NoJoint(joint.clone(), joints(asset)),
@@ -148,7 +159,7 @@ impl HeatMap {
         let greatest = f64::from(all[all.len() - 1]);
         let usual = f64::from(all[floor_index(0.99 * (all.len() - 1) as f64)]);
         let low = if *heat == Heat::UvStretch { 1.0 } else { 0.0 };
-        let whole = matches!(heat, Heat::Weights(_) | Heat::Deviation);
+        let whole = matches!(heat, Heat::Weights(_) | Heat::Deviation | Heat::Distance);
         let high = match heat {
             Heat::Weights(_) => 1.0,
             _ if !whole && greatest - low > 4.0 * (usual - low) && usual > low => usual,

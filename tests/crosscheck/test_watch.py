@@ -33,14 +33,9 @@ SECONDS = 30
 def seen(request: pytest.FixtureRequest, program: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """What a browser saw while files changed: with three.js, and without it."""
     viewer = str(THREE) if request.param == "three.js" else "-"
-    # Node looks for packages above a script.
-    script = ROOT / "scripts" / "node_modules" / ".watched.mjs"
-    shutil.copyfile(Path(__file__).with_name("watched.mjs"), script)
-    try:
-        line = ["node", str(script), str(program), str(tmp_path_factory.mktemp("watch")), viewer, str(ROOT / "specs")]
-        done = subprocess.run(line, capture_output=True, text=True, timeout=300, check=False)
-    finally:
-        script.unlink()
+    script = Path(__file__).with_name("watched.mjs")
+    line = ["node", str(script), str(program), str(tmp_path_factory.mktemp("watch")), viewer, str(ROOT / "specs")]
+    done = subprocess.run(line, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr
     return {"viewer": request.param, **json.loads(done.stdout)}
 

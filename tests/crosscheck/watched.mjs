@@ -5,14 +5,11 @@ import crypto from 'node:crypto';
 import fs from 'node:fs';
 import path from 'node:path';
 import readline from 'node:readline';
-import { chromium } from 'playwright-core';
+
+import { launch, open as openPage } from './browser.mjs';
 
 const [program, folder, three, specs] = process.argv.slice(2);
 const SECONDS = 30;
-const ARGUMENTS = [
-  '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage',
-  '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
-];
 const found = { complaints: [] };
 const watches = [];
 
@@ -69,15 +66,7 @@ async function picture(page) {
 
 const said = (page) => page.locator('#wrong').innerText();
 
-async function open(browser, address) {
-  const page = await browser.newPage({ viewport: { width: 900, height: 560 } });
-  page.on('console', (one) => {
-    if (['error', 'warning'].includes(one.type())) found.complaints.push(`${one.type()}: ${one.text()}`);
-  });
-  page.on('pageerror', (error) => found.complaints.push(`exception: ${error.message}`));
-  await page.goto(address);
-  return page;
-}
+const open = (browser, address) => openPage(browser, address, found.complaints);
 
 async function drag(page) {
   const { x, y, width, height } = await page.locator('#stage').boundingBox();
@@ -243,7 +232,7 @@ async function latency(browser) {
   await page.close();
 }
 
-const browser = await chromium.launch({ executablePath: '/usr/bin/chromium', headless: true, args: ARGUMENTS });
+const browser = await launch();
 try {
   await edits(browser);
   await motion(browser);

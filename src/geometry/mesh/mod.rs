@@ -12,6 +12,7 @@
 pub mod cache;
 pub mod convert;
 pub mod crossing;
+pub mod distance;
 pub mod nearest;
 mod normals;
 pub mod platonic;
