@@ -84,6 +84,8 @@ pub(crate) enum Command {
     Explain(Explain),
     /// Write a commented document to start from
     New(New),
+    /// Make a static page of documents, with pictures and a viewer
+    Gallery(Gallery),
     /// Tell what differs between two models: facts, distance, pictures
     ///
     /// Exit codes: 0 the same bytes, 1 they differ, 2 wrong usage, 3 they cannot be compared.
@@ -359,6 +361,18 @@ pub(crate) struct New {
 pub(crate) struct Inspect {
     /// The file
     pub(crate) file: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Gallery {
+    #[command(flatten)]
+    pub(crate) documents: Documents,
+    /// The folder of the page
+    #[arg(short, long, value_name = "DIR", default_value = "site")]
+    pub(crate) out: PathBuf,
+    /// The folder of three.js [default: where npm installed it, for this folder, the project, or one above]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) three: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

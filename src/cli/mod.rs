@@ -11,6 +11,8 @@ mod dependencies;
 mod describe;
 mod diff;
 mod format;
+mod gallery;
+mod html;
 mod inspect;
 mod output;
 mod project;
@@ -20,6 +22,7 @@ mod sample;
 mod sample_curve;
 mod sample_surface;
 mod starter;
+mod three;
 mod timed;
 mod turns;
 mod watch;
@@ -79,6 +82,7 @@ pub fn run() -> ExitCode {
         Command::Explain(explain) => describe::explain(&explain, &printer),
         Command::New(new) => starter::run(&new, &printer),
         Command::Diff(diff) => diff::run(&diff, &printer),
+        Command::Gallery(gallery) => gallery::run(&gallery, &printer),
         Command::Inspect(inspect) => inspect::run(&inspect, &printer),
         Command::Cache(command) => cache::run(&command, &printer),
         Command::Completions(completions) => describe::completions(&completions),

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::Compared;
 use super::facts::shown;
+use crate::cli::html::escaped;
 
 /// The page's look.
 const STYLE: &str = "body { font: 14px/1.45 system-ui, sans-serif; margin: 2rem auto; max-width: 75rem; padding: 0 1rem } \
@@ -31,11 +32,6 @@ pub(super) fn page(compared: &Compared<'_>, picture: &[u8]) -> String {
          <table><tr><th>fact<th>before<th>after\n{rows}</table>\n</html>\n",
         base64(picture)
     )
-}
-
-/// Text that stands for itself in HTML.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 /// S. Josefsson, RFC 4648, The Base16, Base32, and Base64 Data Encodings, 2006, section 4.

@@ -10,7 +10,7 @@ use serde_json::json;
 use super::baked::Asset;
 use super::request::Request;
 use super::show::Stand;
-use super::three::Three;
+use crate::cli::three::Three;
 use crate::preview::{Camera, Look, Moment, Shading, Stage, View, draw_picture};
 
 /// What all connections share.

@@ -13,7 +13,6 @@ mod request;
 mod seen;
 mod server;
 mod show;
-mod three;
 
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::Path;
@@ -28,13 +27,13 @@ use super::arguments::Watch;
 use super::baked::{line, report_of};
 use super::output::Printer;
 use super::project::task;
+use super::three::Three;
 use crate::compile::Compiled;
 use crate::project::{Task, reason, save};
 use answer::Site;
 use baked::Bake;
 use folders::Folders;
 use show::Stand;
-use three::Three;
 
 /// Changes within this time of the first are one.
 const MERGE: Duration = Duration::from_millis(30);

@@ -91,7 +91,7 @@ function chooseClip() {
 async function show() {
   const asset = news.assets.find((one) => one.file === at('asset').value);
   if (!asset || asset.key === shown?.key) return;
-  if (await viewer.load(asset)) {
+  if (await viewer.load({ ...asset, address: `/asset?key=${asset.key}` })) {
     shown = asset;
     fillClips(asset);
     pose();

@@ -50,10 +50,10 @@ export class Viewer {
     return new THREE.Group();
   }
 
-  // Loads an asset; false where a later one came between, or its bytes are gone already.
+  // Loads an asset (`key` names its bytes, `address` is where they are); false where a later one came between, or its bytes are gone already.
   async load(asset) {
     const turn = ++this.turn;
-    const answer = await fetch(`/asset?key=${asset.key}`);
+    const answer = await fetch(asset.address);
     if (answer.status !== 200) return false;
     const bytes = await answer.arrayBuffer();
     performance.mark('kiln-bytes', { detail: asset.key });
@@ -63,11 +63,7 @@ export class Viewer {
       return false;
     }
     const first = !this.model;
-    if (this.model) {
-      this.scene.remove(this.model.scene, this.model.joints);
-      dispose(this.model.scene);
-      this.model.joints.dispose?.();
-    }
+    this.remove();
     const joints = new THREE.SkeletonHelper(file.scene);
     this.model = { key: asset.key, file, scene: file.scene, joints, mixer: new THREE.AnimationMixer(file.scene) };
     file.scene.traverse((object) => {
@@ -80,6 +76,22 @@ export class Viewer {
     this.wear();
     performance.mark('kiln-loaded', { detail: asset.key });
     return true;
+  }
+
+  // Takes the model away; the next one is fitted into the picture.
+  forget() {
+    this.turn += 1;
+    this.remove();
+    this.unpick();
+    this.draw();
+  }
+
+  remove() {
+    if (!this.model) return;
+    this.scene.remove(this.model.scene, this.model.joints);
+    dispose(this.model.scene);
+    this.model.joints.dispose();
+    this.model = null;
   }
 
   set(name, value) {

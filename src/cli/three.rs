@@ -1,9 +1,12 @@
 //! The viewer library of other people, three.js, where it is installed: Kiln carries no copy of it.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use crate::language::source::join;
+
 /// The folder of an installed three.js.
-pub(super) struct Three {
+pub(crate) struct Three {
     /// With all links followed.
     folder: PathBuf,
 }
@@ -20,7 +23,7 @@ const LARGEST: u64 = 64 << 20;
 impl Three {
     /// The folder that is named; else one beside the program, or where npm put it for the working directory, the project,
     /// or a folder above them. None where there is none.
-    pub(super) fn find(named: Option<&Path>, root: &Path) -> Result<Option<Self>, String> {
+    pub(crate) fn find(named: Option<&Path>, root: &Path) -> Result<Option<Self>, String> {
         if let Some(named) = named {
             let wrong = || format!("{} does not hold three.js: there is no {MODULE} in it", named.display());
             return Self::at(named).map(Some).ok_or_else(wrong);
@@ -40,8 +43,24 @@ impl Three {
         folder.join(MODULE).is_file().then_some(Self { folder })
     }
 
+    /// The modules that a module of a page needs, and those that these need: their paths in the folder and what stands there.
+    pub(crate) fn needed(&self, text: &str) -> Vec<(String, Vec<u8>)> {
+        let mut open: Vec<String> = imports(text).filter_map(|written| located(written, "")).collect();
+        let mut found: BTreeMap<String, Vec<u8>> = BTreeMap::new();
+        while let Some(path) = open.pop() {
+            if found.contains_key(&path) {
+                continue;
+            }
+            let Some(bytes) = self.read(&path) else { continue };
+            let text = String::from_utf8_lossy(&bytes);
+            open.extend(imports(&text).filter_map(|written| located(written, &path)));
+            found.insert(path, bytes);
+        }
+        found.into_iter().collect()
+    }
+
     /// A module by its path in the folder.
-    pub(super) fn read(&self, path: &str) -> Option<Vec<u8>> {
+    pub(crate) fn read(&self, path: &str) -> Option<Vec<u8>> {
         let plain = |part: &str| {
             !part.starts_with('.')
                 && !part.is_empty()
@@ -59,6 +78,27 @@ impl Three {
         let inside = file.starts_with(&self.folder) && facts.is_file() && facts.len() <= LARGEST;
         inside.then(|| std::fs::read(file).ok())?
     }
+}
+
+/// The modules that a text of JavaScript imports, as they are written.
+fn imports(text: &str) -> impl Iterator<Item = &str> {
+    let starts = text.match_indices("from ").map(|(at, word)| &text[at + word.len()..]);
+    starts.filter_map(|rest| {
+        let quote = rest.chars().next().filter(|sign| matches!(sign, '\'' | '"'))?;
+        rest[1..].split_once(quote).map(|(path, _)| path)
+    })
+}
+
+/// The path of an imported module in the folder, where it is one of those: by the names that pages give them, or from the
+/// module that imports it.
+fn located(written: &str, from: &str) -> Option<String> {
+    if written == "three" {
+        return Some(MODULE.to_owned());
+    }
+    if let Some(path) = written.strip_prefix("three/addons/") {
+        return Some(format!("examples/jsm/{path}"));
+    }
+    (!from.is_empty() && written.starts_with('.')).then(|| join(from, written).ok())?
 }
 
 #[cfg(test)]
@@ -96,5 +136,18 @@ mod tests {
             assert!(three.read("build/link.js").is_none());
         }
         assert!(Three::find(Some(folder.path()), folder.path()).is_err());
+        std::fs::write(
+            root.join("examples/jsm/a/b.js"),
+            "import {\n  c\n} from '../d.js';\nexport * from \"three\";",
+        )
+        .unwrap();
+        std::fs::write(
+            root.join("examples/jsm/d.js"),
+            "import e from '../../../secret.js'; import f from './a/b.js'",
+        )
+        .unwrap();
+        let needed = three.needed("import { B } from 'three/addons/a/b.js';\nimport x from './own.js'");
+        let paths: Vec<&str> = needed.iter().map(|(path, _)| path.as_str()).collect();
+        assert_eq!(paths, [MODULE, "examples/jsm/a/b.js", "examples/jsm/d.js"]);
     }
 }
