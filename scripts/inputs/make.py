@@ -7,7 +7,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from inputs import bird, crate, label
+from inputs import bird, caterpillar, crate, label
 
 SPECS = Path(__file__).resolve().parents[2] / "specs" / "inputs"
 
@@ -21,6 +21,8 @@ def main() -> None:
     color.write(folder / "crate-color.png")
     normal.write(folder / "crate-normal.png")
     (folder / "bird.obj").write_text(bird.obj(), encoding="utf-8")
+    (folder / "caterpillar.md2").write_bytes(caterpillar.md2())
+    caterpillar.draw().write(folder / "caterpillar.png")
 
 
 if __name__ == "__main__":

@@ -1,9 +1,12 @@
 //! Meshes from files.
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::Builder;
 use crate::geometry::mesh;
+use crate::import::md2::{Md2, Md2Fault};
 use crate::import::{self, ImportOptions, Imported, MaterialLook};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::{FileError, Span, join};
@@ -50,15 +53,50 @@ impl Builder<'_> {
         self.report(report);
     }
 
-    fn read_mesh(&mut self, import: &Import) -> Option<Imported> {
-        let file = &import.file;
-        let bytes = match self.files.read(&file.value.resolved) {
-            Ok(bytes) => bytes,
+    fn bytes_of(&mut self, file: &Sp<FilePath>) -> Option<Arc<[u8]>> {
+        match self.files.read(&file.value.resolved) {
+            Ok(bytes) => Some(bytes),
             Err(error) => {
                 self.file_fault(&error, file);
-                return None;
+                None
             }
-        };
+        }
+    }
+
+    /// The model of an MD2 file.
+    pub(super) fn read_md2(&mut self, import: &Import) -> Option<Md2> {
+        let file = &import.file;
+        let bytes = self.bytes_of(file)?;
+        let read = import::md2::read(&bytes).map_err(|fault| match import::recognize(&bytes) {
+            Some(foreign) if fault == Md2Fault::NotMd2 => import::ImportError::Foreign(foreign),
+            _ => fault.into(),
+        });
+        read.map_err(|error| self.refused(file, &error)).ok()
+    }
+
+    /// The shape of an MD2 file: one of its frames.
+    fn framed_mesh(&mut self, import: &Import) -> Option<Imported> {
+        let group = import.group.as_ref().map(|group| ("group", group.span));
+        let weld = import.weld.map(|weld| ("weld", weld.span));
+        if let Some((field, span)) = group.or(weld) {
+            let message =
+                format!("an MD2 file has one mesh, whose points are those of every frame: no `{field}`");
+            self.report(Diagnostic::error(Code::Conflict, message).at(span, "leave it out"));
+            return None;
+        }
+        let found = self.read_md2(import)?;
+        let frame = self.frame_of(import, &found)?;
+        let mut mesh = found.mesh;
+        mesh.points.clone_from(&found.frames[frame].points);
+        Some(Imported { mesh, ..Imported::default() })
+    }
+
+    fn read_mesh(&mut self, import: &Import) -> Option<Imported> {
+        let file = &import.file;
+        if file.value.extension() == "md2" {
+            return self.framed_mesh(import);
+        }
+        let bytes = self.bytes_of(file)?;
         let options = ImportOptions {
             group: import.group.as_ref().map(|group| group.value.clone()),
             weld: import.weld.map(|weld| weld.value),
@@ -72,30 +110,33 @@ impl Builder<'_> {
         let read = match file.value.extension().as_str() {
             "stl" => import::stl::read(&bytes, &options),
             "obj" => import::obj::read(&bytes, &options, &mut open),
+            "ply" => import::ply::read(&bytes, &options),
             other => return self.unsupported(file, other, &bytes),
         };
         match read {
             Ok(imported) => Some(imported),
             Err(error) => {
-                let line = error.line().map_or_else(String::new, |line| format!(":{line}"));
-                let message = format!("{}{line}: {error}", file.value.written);
-                let code = match error {
-                    import::ImportError::Foreign(_) | import::ImportError::Binary { .. } => {
-                        Code::UnsupportedFormat
-                    }
-                    import::ImportError::UnknownGroup { .. } | import::ImportError::EmptyGroup { .. } => {
-                        Code::UnknownPart
-                    }
-                    _ => Code::ImportFailed,
-                };
-                let report = Diagnostic::error(code, message).at(file.span, "cannot be imported");
-                self.report(match error.hint() {
-                    Some(hint) => report.help(hint),
-                    None => report,
-                });
+                self.refused(file, &error);
                 None
             }
         }
+    }
+
+    fn refused(&mut self, file: &Sp<FilePath>, error: &import::ImportError) {
+        let line = error.line().map_or_else(String::new, |line| format!(":{line}"));
+        let message = format!("{}{line}: {error}", file.value.written);
+        let code = match error {
+            import::ImportError::Foreign(_) | import::ImportError::Binary { .. } => Code::UnsupportedFormat,
+            import::ImportError::UnknownGroup { .. } | import::ImportError::EmptyGroup { .. } => {
+                Code::UnknownPart
+            }
+            _ => Code::ImportFailed,
+        };
+        let report = Diagnostic::error(code, message).at(file.span, "cannot be imported");
+        self.report(match error.hint() {
+            Some(hint) => report.help(hint),
+            None => report,
+        });
     }
 
     fn unsupported<T>(&mut self, file: &Sp<FilePath>, extension: &str, bytes: &[u8]) -> Option<T> {
@@ -107,12 +148,13 @@ impl Builder<'_> {
                 } else {
                     format!("a .{extension} file")
                 },
-                "export it as Wavefront OBJ (.obj) or STL (.stl)",
+                "export it as Wavefront OBJ (.obj), STL (.stl), PLY (.ply) or Quake II model (.md2)",
             ),
         };
         let message = format!("{} is {what}, which cannot be imported", file.value.written);
-        let report =
-            Diagnostic::error(Code::UnsupportedFormat, message).at(file.span, "not OBJ or STL").help(hint);
+        let report = Diagnostic::error(Code::UnsupportedFormat, message)
+            .at(file.span, "not OBJ, STL, PLY or MD2")
+            .help(hint);
         self.report(report);
         None
     }
@@ -189,7 +231,7 @@ impl Builder<'_> {
     }
 }
 
-/// OBJ files have y up by custom, STL files z.
-fn default_up(file: &Sp<FilePath>) -> Up {
-    if file.value.extension() == "stl" { Up::Z } else { Up::Y }
+/// OBJ files have y up by custom, STL and MD2 files z.
+pub(super) fn default_up(file: &Sp<FilePath>) -> Up {
+    if matches!(file.value.extension().as_str(), "stl" | "md2") { Up::Z } else { Up::Y }
 }

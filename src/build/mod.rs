@@ -20,6 +20,7 @@ mod extrude;
 mod field;
 mod formula;
 mod formula_curve;
+mod frames;
 mod height;
 mod height_base;
 mod implicit;
@@ -242,8 +243,10 @@ impl<'a> Builder<'a> {
         self.skeletons();
         self.nodes();
         self.skins();
+        let played = self.frames();
         self.morphs(states);
         self.clips();
+        self.sequence_clips(played);
         self.colliders();
     }
 

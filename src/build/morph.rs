@@ -6,6 +6,9 @@ use crate::language::source::Span;
 use crate::language::spec::{self, MorphName, Sp, closest};
 use crate::model::{Morph, ShapeHandle, State, Target};
 
+/// The most names that are listed.
+const LISTED: usize = 12;
+
 impl Builder<'_> {
     pub(super) fn morphs(&mut self, states: &[StateModel]) {
         let spec = self.spec;
@@ -14,6 +17,15 @@ impl Builder<'_> {
             self.check_shown(name, shape, definition.name.span);
             for (target, morph) in &definition.value {
                 let Some(state) = self.state(name, shape, morph, states) else { continue };
+                if self.model.morphs_of(shape).any(|known| known.name == *target) {
+                    let message = format!("state `{target}` of shape `{name}` is defined twice");
+                    let report = Diagnostic::error(Code::DuplicateName, message)
+                        .at(morph.span, "here")
+                        .also(definition.name.span, "and as a frame of the shape's file")
+                        .help("give it another name");
+                    self.report(report);
+                    continue;
+                }
                 let (name, weight) = (target.clone(), morph.weight.value);
                 self.model.morphs.push(Morph { name, shape, weight, state });
                 self.morph_places.push(morph.span);
@@ -66,17 +78,25 @@ impl Builder<'_> {
         track: &spec::ClipTrack,
     ) -> Option<Vec<Target>> {
         let MorphName { shape, target } = &morph.value;
-        let Some(known) = self.spec.morphs.get(shape) else {
-            let names = self.spec.morphs.keys().map(String::as_str);
-            self.report(unknown(morph, &format!("no morph of a shape `{shape}`"), shape, names));
+        let known = self.spec.shapes.contains_key(shape).then(|| self.named_shape(shape));
+        // A shape that could not be built was told.
+        let handle = known.map_or(Some(None), |built| built.map(Some))?;
+        let morphs: Vec<&Morph> =
+            handle.into_iter().flat_map(|handle| self.model.morphs_of(handle)).collect();
+        let (Some(handle), false) = (handle, morphs.is_empty()) else {
+            let mut names: Vec<&str> =
+                self.model.morphs.iter().map(|morph| self.model.shape(morph.shape).name.as_str()).collect();
+            names.dedup();
+            let report = unknown(morph, &format!("no morph of a shape `{shape}`"), shape, &names);
+            self.report(report);
             return None;
         };
-        let Some(target) = known.value.get_index_of(target) else {
-            let names = known.value.keys().map(String::as_str);
-            self.report(unknown(morph, &format!("no state `{target}` of `{shape}`"), target, names));
+        let names: Vec<&str> = morphs.iter().map(|morph| morph.name.as_str()).collect();
+        let Some(target) = names.iter().position(|name| name == target) else {
+            let report = unknown(morph, &format!("no state `{target}` of `{shape}`"), target, &names);
+            self.report(report);
             return None;
         };
-        let handle = self.named_shape(shape)?;
         let only = track.node.as_ref().and_then(|node| self.spec.nodes.get_index_of(&node.value.0));
         let shows = |node: &usize| self.model.nodes[*node].shape == Some(handle);
         let nodes: Vec<usize> = (0..self.model.nodes.len())
@@ -95,18 +115,12 @@ impl Builder<'_> {
     }
 }
 
-fn unknown<'n>(
-    morph: &Sp<MorphName>,
-    what: &str,
-    part: &str,
-    names: impl Iterator<Item = &'n str> + Clone,
-) -> Diagnostic {
+fn unknown(morph: &Sp<MorphName>, what: &str, part: &str, known: &[&str]) -> Diagnostic {
     let report =
         Diagnostic::error(Code::UnknownName, format!("there is {what}")).at(morph.span, "not defined");
-    let known: Vec<&str> = names.clone().collect();
-    match closest(part, names) {
+    match closest(part, known.iter().copied()) {
         Some(near) => report.help(format!("did you mean `{near}`?")),
         None if known.is_empty() => report.note("this document defines no morph"),
-        None => report.note(format!("there is: {}", known.join(", "))),
+        None => report.note(format!("there is: {}", known[..known.len().min(LISTED)].join(", "))),
     }
 }

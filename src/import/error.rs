@@ -3,6 +3,8 @@
 use thiserror::Error;
 
 use super::Foreign;
+use super::md2::Md2Fault;
+use super::ply::PlyFault;
 
 /// Why a file could not be imported. `Display` is a message for a diagnostic, [`ImportError::line`] its place,
 /// [`ImportError::hint`] what to do.
@@ -144,6 +146,12 @@ pub enum ImportError {
         /// The limit.
         limit: u32,
     },
+    /// A Quake II model that is none.
+    #[error(transparent)]
+    Md2(#[from] Md2Fault),
+    /// A PLY file that is none.
+    #[error(transparent)]
+    Ply(#[from] PlyFault),
     /// The OBJ parser refused a text that passed every check of ours.
     #[error("the OBJ parser refused the file: {reason}")]
     Refused {
@@ -180,7 +188,8 @@ impl ImportError {
             }
             Self::UnknownGroup { known, .. } => format!("its groups are: {}", list_names(known)),
             Self::EmptyGroup { .. } => "leave `group` out, or name a group with faces".to_owned(),
-            Self::Truncated { .. } | Self::TooShort { .. } => {
+            Self::Md2(Md2Fault::NotMd2) => "let its name end as those of its format do".to_owned(),
+            Self::Truncated { .. } | Self::TooShort { .. } | Self::Md2(_) | Self::Ply(_) => {
                 "the file is cut off; export it again".to_owned()
             }
             Self::Unexpected { .. } => {

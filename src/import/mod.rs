@@ -9,7 +9,9 @@ mod error;
 mod foreign;
 pub mod heights;
 pub mod image;
+pub mod md2;
 pub mod obj;
+pub mod ply;
 pub mod stl;
 
 use crate::geometry::mesh::PolygonMesh;

@@ -17,25 +17,9 @@ use std::borrow::Cow;
 
 use glam::{DAffine3, DQuat, DVec3, DVec4};
 
-use super::morphed::MorphedBox;
+use super::rig::{Rig, least_factor, order, places, reaches, rest_value, stretch};
 use super::rotation::{nearer, normalized_lerp, slerp};
 use super::track::Path;
-use super::transform::Transform;
-
-/// What moves: nodes in trees, with points that are watched.
-#[derive(Clone, Debug)]
-pub struct Rig {
-    /// For each node its parent.
-    pub parents: Vec<Option<usize>>,
-    /// For each node its place at rest.
-    pub rest: Vec<Transform>,
-    /// For each node points in its space.
-    pub points: Vec<Vec<DVec3>>,
-    /// For each node the weights of the morph targets of its mesh at rest.
-    pub weights: Vec<Vec<f64>>,
-    /// Points that morph.
-    pub morphed: Vec<MorphedBox>,
-}
 
 /// A part of a node that changes.
 pub struct Moving<'a> {
@@ -49,6 +33,8 @@ pub struct Moving<'a> {
     pub exact: Box<dyn Fn(f64) -> DVec4 + Sync + 'a>,
     /// The times of its keys where it jumps from key to key, and is written so.
     pub steps: Option<Vec<f64>>,
+    /// The times of its keys where it runs straight from key to key, and is written so.
+    pub corners: Option<Vec<f64>>,
 }
 
 /// How the motion is sampled and how exactly it is kept.
@@ -115,23 +101,6 @@ pub fn reduce(rig: &Rig, moving: &[Moving<'_>], wanted: &Wanted) -> Reduced {
         }
         rate *= 2.0;
     }
-}
-
-/// Nodes with parents first.
-fn order(rig: &Rig) -> Vec<usize> {
-    let mut order = Vec::with_capacity(rig.parents.len());
-    let mut placed = vec![false; rig.parents.len()];
-    for start in 0..rig.parents.len() {
-        let mut chain = Vec::new();
-        let mut next = Some(start);
-        while let Some(node) = next.filter(|node| !placed[*node]) {
-            placed[node] = true;
-            chain.push(node);
-            next = rig.parents[node];
-        }
-        order.extend(chain.into_iter().rev());
-    }
-    order
 }
 
 /// A time in the precision in which it is written.
@@ -370,6 +339,9 @@ impl<'a> Study<'a> {
         if constant(values[0]) {
             return written(vec![0.0], vec![values[0]]);
         }
+        if let Some(corners) = &one.corners {
+            return self.cornered(one, corners, written);
+        }
         let last = values.len() - 1;
         let (mut times, mut kept) = (vec![self.times[0]], vec![values[0]]);
         let mut from = 0;
@@ -392,6 +364,32 @@ impl<'a> Study<'a> {
             let value = (one.exact)(*time);
             if values.last() != Some(&value) {
                 times.push(single(*time));
+                values.push(value);
+            }
+        }
+        debug_assert!(!times.is_empty() && self.times.len() > 1);
+        written(times, values)
+    }
+
+    /// The keys of what runs straight between them, without those that lie on the way of their neighbours.
+    fn cornered(
+        &self,
+        one: &Moving<'_>,
+        corners: &[f64],
+        written: impl Fn(Vec<f64>, Vec<DVec4>) -> ReducedTrack,
+    ) -> ReducedTrack {
+        let (mut times, mut values): (Vec<f64>, Vec<DVec4>) = (Vec::new(), Vec::new());
+        for time in corners.iter().map(|time| single(*time)) {
+            let value = (one.exact)(time);
+            if let ([.., a, b], [.., from, over]) = (times.as_slice(), values.as_slice()) {
+                let way = *from + (value - *from) * ((b - a) / (time - a));
+                if way.distance(*over) <= 1e-9 {
+                    times.pop();
+                    values.pop();
+                }
+            }
+            if times.last().is_none_or(|last| *last < time) {
+                times.push(time);
                 values.push(value);
             }
         }
@@ -505,16 +503,6 @@ fn times(wanted: &Wanted, rate: f64) -> Vec<f64> {
     times
 }
 
-/// The value of a place at rest.
-fn rest_value(rest: &Transform, path: Path) -> DVec4 {
-    match path {
-        Path::Translation => rest.translation.extend(0.0),
-        Path::Rotation => DVec4::from(rest.rotation),
-        Path::Scale => rest.scale.extend(0.0),
-        Path::Weight => DVec4::ZERO,
-    }
-}
-
 fn between(path: Path, player: Player, (from, to): (DVec4, DVec4), share: f64) -> DVec4 {
     if path != Path::Rotation {
         return from + (to - from) * share;
@@ -559,39 +547,6 @@ fn worlds(
         worlds[*node] = outside * local[*node].map();
     }
     worlds
-}
-
-fn places(points: &[Vec<DVec3>], worlds: &[DAffine3]) -> Vec<DVec3> {
-    let of = |(points, world): (&Vec<DVec3>, &DAffine3)| {
-        points.iter().map(|point| world.transform_point3(*point)).collect::<Vec<_>>()
-    };
-    points.iter().zip(worlds).flat_map(of).collect()
-}
-
-/// For each node the greatest distance of a point that it carries from its origin, metres: over its own points, and
-/// for those of nodes below by the triangle inequality.
-fn reaches(rig: &Rig, points: &[Vec<DVec3>], order: &[usize], worlds: &[DAffine3]) -> Vec<f64> {
-    let mut reach = vec![0.0_f64; worlds.len()];
-    for node in order.iter().rev() {
-        let origin = worlds[*node].translation;
-        for point in &points[*node] {
-            reach[*node] = reach[*node].max(worlds[*node].transform_point3(*point).distance(origin));
-        }
-        if let Some(parent) = rig.parents[*node] {
-            reach[parent] = reach[parent].max(reach[*node] + worlds[parent].translation.distance(origin));
-        }
-    }
-    reach
-}
-
-fn stretch(map: &DAffine3) -> f64 {
-    let columns = [map.matrix3.x_axis, map.matrix3.y_axis, map.matrix3.z_axis];
-    columns.iter().map(|column| column.length()).fold(0.0, f64::max)
-}
-
-fn least_factor(map: &DAffine3) -> f64 {
-    let columns = [map.matrix3.x_axis, map.matrix3.y_axis, map.matrix3.z_axis];
-    columns.iter().map(|column| column.length()).fold(f64::INFINITY, f64::min).max(1e-6)
 }
 
 #[cfg(test)]

@@ -131,6 +131,17 @@ impl Course {
         }
     }
 
+    /// The times of the keys of a weight that runs straight from key to key; none for everything else.
+    #[must_use]
+    pub fn corners(&self) -> Option<Vec<f64>> {
+        match self {
+            Self::Weight(Law::Keys(keys)) if keys.interpolation == Interpolation::Linear => {
+                Some(keys.times.clone())
+            }
+            _ => None,
+        }
+    }
+
     /// Whether it jumps from key to key.
     #[must_use]
     pub fn stepped(&self) -> bool {

@@ -409,7 +409,8 @@ fn moving<'a>(model: &'a Model, rig: &Rig, track: &'a ClipTrack, node: usize) ->
         }
     };
     let steps = track.course.stepped().then(|| track.course.stops());
-    Moving { node, path, target, exact: Box::new(exact), steps }
+    let corners = track.course.corners();
+    Moving { node, path, target, exact: Box::new(exact), steps, corners }
 }
 
 fn at_rest(rest: &Transform, path: Path) -> DVec4 {

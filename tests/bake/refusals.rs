@@ -8,6 +8,9 @@ use kiln::language::source::MemoryFiles;
 
 use crate::language::cases::{Case, check_folder};
 
+/// A model with frames.
+const CATERPILLAR: &[u8] = include_bytes!("../../specs/inputs/caterpillar.md2");
+
 /// The case's own files, and broken ones that a text cannot hold.
 fn with_broken(files: MemoryFiles) -> MemoryFiles {
     let png: &[u8] = include_bytes!("../../specs/inputs/label.png");
@@ -24,6 +27,9 @@ fn with_broken(files: MemoryFiles) -> MemoryFiles {
         .with("bomb.png", bomb)
         .with("text.png", "not an image")
         .with("bird.obj", include_str!("../../specs/inputs/bird.obj"))
+        .with("caterpillar.md2", CATERPILLAR)
+        .with("half.md2", &CATERPILLAR[..CATERPILLAR.len() / 2])
+        .with("bird.md2", include_str!("../../specs/inputs/bird.obj"))
         .with("liar.stl", liar)
         .with("empty.obj", "")
         .with("scene.blend", b"BLENDER-v293".as_slice())

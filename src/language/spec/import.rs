@@ -25,7 +25,8 @@ pub struct FilePath {
 }
 
 table! {
-    /// A model from a file: Wavefront OBJ or STL.
+    /// A model from a file: Wavefront OBJ, STL, PLY, or a Quake II model (MD2), whose frames become morphs of the shape where a node
+    /// shows it, with a name each, and whose sequences become clips.
     "import" pub Import {
         /// The file; the path is relative to this document and stays inside the project.
         file: Sp<FilePath>;
@@ -33,12 +34,44 @@ table! {
         group: Option<Sp<String>>;
         /// Factor from the file's unit to the document's: 0.001 for millimetres in a document in metres.
         scale: Sp<f64> = 1.0 => Check::above(0.0);
-        /// Which axis of the file points up: `"y"` when it is not written, for STL `"z"`.
+        /// Which axis of the file points up: `"y"` when it is not written, for STL and MD2 `"z"`.
         up: Option<Sp<Up>>;
         /// Points nearer than this, in the file's unit, are made one.
         weld: Option<Sp<f64>> => Check::at_least(0.0);
         /// For each material of the file the name of one of this document.
         materials: IndexMap<String, Sp<MaterialName>> = IndexMap::new();
+        /// The frame of an MD2 file that is the shape, by its name in the file; the first when it is not written.
+        frame: Option<Sp<String>>;
+        /// Which frames of an MD2 file are read.
+        frames: Sp<Frames> = Frames::All;
+        /// How the sequences of an MD2 file are told.
+        sequences: Sp<Sequences> = Sequences::Named;
+        /// Frames of an MD2 file that are played in a second.
+        frame_rate: Sp<f64> = 10.0 => Check::within(1.0, 1000.0);
+        /// The sequences of an MD2 file that are played again and again: from their last frame they go on to the first.
+        r#loop: Vec<Sp<String>> = Vec::new();
+    }
+}
+
+choices! {
+    /// Which frames of a file are read.
+    Frames {
+        /// All: those that are not the shape are morphs of it, and sequences are clips.
+        All = "all";
+        /// The one that is the shape.
+        One = "one";
+    }
+}
+
+choices! {
+    /// How the sequences of a file are told.
+    Sequences {
+        /// By the names of their frames: `stand01` and `stand02` are of the sequence `stand`, `pain101` is of `pain1`.
+        Named = "named";
+        /// By their places, as those of a player in Quake II: `stand`, `run`, `attack`, `pain-a`, `pain-b`, `pain-c`, `jump`,
+        /// `flip`, `salute`, `taunt`, `wave`, `point`, `crouch-stand`, `crouch-walk`, `crouch-attack`, `crouch-pain`,
+        /// `crouch-death`, `death-fall-back`, `death-fall-forward`, `death-fall-back-slow`, and `boom` where the file has it.
+        Standard = "standard";
     }
 }
 

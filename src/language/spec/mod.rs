@@ -101,7 +101,7 @@ pub use grid::{Degrees, Directions, Rows};
 pub use height::{HeightBound, HeightClose, HeightMap, Level, Mask, Split, SplitOperation, SplitPart};
 pub use height_base::{CylinderBase, EllipsoidBase, HeightBase, Projection, ShapeBase, SphereBase};
 pub use implicit::Implicit;
-pub use import::{FilePath, Import, Up};
+pub use import::{FilePath, Frames, Import, Sequences, Up};
 pub use joined::Joined;
 pub use knots::KnotRule;
 pub use limit::Limits;

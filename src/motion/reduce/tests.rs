@@ -1,10 +1,10 @@
 use glam::{DVec3, DVec4};
 
-use super::{Moving, Reduced, Rig, Wanted, reduce};
+use super::{Moving, Reduced, Wanted, reduce};
 use crate::geometry::number::Bounds;
 use crate::geometry::number::sin_degrees;
 use crate::motion::rotation::about;
-use crate::motion::{MorphedBox, MorphedState};
+use crate::motion::{MorphedBox, MorphedState, Rig};
 use crate::motion::{Path, Transform};
 
 fn arm() -> Rig {
@@ -19,7 +19,7 @@ fn arm() -> Rig {
 }
 
 fn reduced(tolerance: f64, exact: impl Fn(f64) -> DVec4 + Sync, path: Path) -> Reduced {
-    let moving = [Moving { node: 0, path, target: 0, exact: Box::new(exact), steps: None }];
+    let moving = [Moving { node: 0, path, target: 0, exact: Box::new(exact), steps: None, corners: None }];
     let wanted = Wanted { duration: 2.0, tolerance, rate: 60.0, stops: vec![1.0], most: 10_000 };
     reduce(&arm(), &moving, &wanted)
 }
@@ -49,13 +49,21 @@ fn straight_ways_keep_their_ends_and_corners_alone() {
 fn what_stays_at_rest_is_left_out_but_the_clip_keeps_its_length() {
     let still = |_| DVec4::from(about(DVec3::X, 0.0));
     let moving = [
-        Moving { node: 0, path: Path::Rotation, target: 0, exact: Box::new(still), steps: None },
+        Moving {
+            node: 0,
+            path: Path::Rotation,
+            target: 0,
+            exact: Box::new(still),
+            steps: None,
+            corners: None,
+        },
         Moving {
             node: 1,
             path: Path::Translation,
             target: 0,
             exact: Box::new(|time| DVec4::new(0.0, 1.0 + time, 0.0, 0.0)),
             steps: None,
+            corners: None,
         },
     ];
     let wanted = Wanted { duration: 2.0, tolerance: 1e-3, rate: 60.0, stops: vec![], most: 10_000 };
@@ -73,6 +81,7 @@ fn steps_stay_steps() {
         target: 0,
         exact: Box::new(jump),
         steps: Some(vec![0.0, 0.5, 0.75]),
+        corners: None,
     }];
     let wanted = Wanted { duration: 2.0, tolerance: 1e-3, rate: 60.0, stops: vec![], most: 10_000 };
     let found = reduce(&arm(), &moving, &wanted);
@@ -112,7 +121,14 @@ fn weights_are_held_to_the_distance_that_they_move_points() {
     let wave = |time: f64| DVec4::X * sin_degrees(90.0 * time);
     let mut before = 0;
     for tolerance in [0.1, 0.01, 1e-3] {
-        let moving = [Moving { node: 0, path: Path::Weight, target: 0, exact: Box::new(wave), steps: None }];
+        let moving = [Moving {
+            node: 0,
+            path: Path::Weight,
+            target: 0,
+            exact: Box::new(wave),
+            steps: None,
+            corners: None,
+        }];
         let wanted = Wanted { duration: 2.0, tolerance, rate: 60.0, stops: vec![1.0], most: 10_000 };
         let found = reduce(&swelling(), &moving, &wanted);
         let keys = &found.tracks[0];

@@ -1,0 +1,251 @@
+//! PLY (Stanford polygons), text and binary of either byte order: points, normals, texture coordinates, polygons, strips.
+//!
+//! The header says what stands in the file, element by element and property by property; what is not known is passed
+//! over. Texture coordinates are those of points or of the corners of faces. Colors of points have no place in the
+//! result, and a note says so.
+//!
+//! Promise: counts are held against the bytes that they need at least before anything is read. Source: G. Turk, The PLY
+//! polygon file format, Stanford University, 1994.
+
+mod body;
+mod header;
+
+use glam::{DVec2, DVec3};
+use thiserror::Error;
+
+use self::body::Body;
+use self::header::{Element, Header};
+use super::{ImportError, ImportOptions, Imported, Note};
+use crate::geometry::mesh::PolygonMesh;
+use crate::geometry::mesh::polygon::NONE;
+
+/// Why a file is no mesh.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum PlyFault {
+    /// The header is not one.
+    #[error("line {line} of the header: expected {expected}, found `{found}`")]
+    Header {
+        /// Line of the file, from 1.
+        line: u32,
+        /// What must stand there.
+        expected: &'static str,
+        /// What does.
+        found: String,
+    },
+    /// More than the file has room for.
+    #[error(
+        "the header announces {count} of element `{element}`, which need at least {needed} bytes, and {left} are left"
+    )]
+    Truncated {
+        /// The element.
+        element: String,
+        /// How many.
+        count: u64,
+        /// Bytes that they need at least.
+        needed: u64,
+        /// Bytes that are left.
+        left: usize,
+    },
+    /// The file ends in the middle.
+    #[error("the file ends inside `{element}` {row}")]
+    Ends {
+        /// The element.
+        element: String,
+        /// Which of it, from 1.
+        row: u64,
+    },
+    /// What is no number, or not finite.
+    #[error("`{property}` of `{element}` {row} is `{found}`, which is no finite number")]
+    Number {
+        /// The element.
+        element: String,
+        /// Which of it, from 1.
+        row: u64,
+        /// The property.
+        property: String,
+        /// What stands there.
+        found: String,
+    },
+    /// A corner that there is not.
+    #[error("`{element}` {row} has the point {index}, and the file has {count}, counted from 0")]
+    Index {
+        /// The element.
+        element: String,
+        /// Which of it, from 1.
+        row: u64,
+        /// Its number.
+        index: f64,
+        /// How many points there are.
+        count: usize,
+    },
+}
+
+/// What is read of points.
+const POINT: [&[&str]; 3] = [&["x"], &["y"], &["z"]];
+const NORMAL: [&[&str]; 3] = [&["nx"], &["ny"], &["nz"]];
+const PLACE: [&[&str]; 2] = [&["u", "s", "texture_u", "texture_s"], &["v", "t", "texture_v", "texture_t"]];
+const COLORS: [&str; 3] = ["red", "diffuse_red", "r"];
+const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
+
+/// Reads a file. Linear in its length.
+///
+/// # Errors
+/// The first fault in it.
+pub fn read(bytes: &[u8], options: &ImportOptions) -> Result<Imported, ImportError> {
+    let (header, start) = header::read(bytes)?;
+    if let Some(group) = &options.group {
+        return Err(ImportError::UnknownGroup { group: group.clone(), known: Vec::new() });
+    }
+    let mut body = Body::new(&bytes[start..], header.format);
+    let mut found = Found::default();
+    for element in &header.elements {
+        body.check(element)?;
+        match element.name.as_str() {
+            "vertex" => found.points(element, &mut body)?,
+            "face" => found.faces(element, &mut body)?,
+            "tristrips" => found.strips(element, &mut body)?,
+            _ => (0..element.count).try_for_each(|row| body.row(element, row, |_, _| Ok(())))?,
+        }
+    }
+    found.finish(&header, options)
+}
+
+#[derive(Default)]
+struct Found {
+    mesh: PolygonMesh,
+    normals: Vec<DVec3>,
+    places: Vec<DVec2>,
+    /// Faces that have fewer than three corners.
+    small: u64,
+}
+
+impl Found {
+    fn points(&mut self, element: &Element, body: &mut Body<'_>) -> Result<(), PlyFault> {
+        let columns = |names: &[&[&str]]| -> Option<Vec<usize>> {
+            names.iter().map(|names| element.find(names)).collect()
+        };
+        let (point, normal, place) = (columns(&POINT), columns(&NORMAL), columns(&PLACE));
+        for row in 0..element.count {
+            let mut numbers = vec![0.0; element.properties.len()];
+            body.row(element, row, |column, values| {
+                if let [value] = values {
+                    numbers[column] = *value;
+                }
+                Ok(())
+            })?;
+            let vector = |columns: &Option<Vec<usize>>| {
+                columns.as_ref().map(|at| DVec3::new(numbers[at[0]], numbers[at[1]], numbers[at[2]]))
+            };
+            self.mesh.points.push(vector(&point).unwrap_or_default());
+            self.normals.extend(vector(&normal));
+            // Pictures have their first row on top, and v counts from below.
+            self.places.extend(place.as_ref().map(|at| DVec2::new(numbers[at[0]], 1.0 - numbers[at[1]])));
+        }
+        Ok(())
+    }
+
+    fn faces(&mut self, element: &Element, body: &mut Body<'_>) -> Result<(), PlyFault> {
+        let (corners, places) = (element.find(&CORNERS), element.find(&["texcoord"]));
+        for row in 0..element.count {
+            let (mut own, mut own_places) = (Vec::new(), Vec::new());
+            body.row(element, row, |column, values| {
+                if Some(column) == corners {
+                    own = values.to_vec();
+                } else if Some(column) == places {
+                    own_places = values.to_vec();
+                }
+                Ok(())
+            })?;
+            let own =
+                own.iter().map(|index| self.corner(element, row, *index)).collect::<Result<Vec<u32>, _>>()?;
+            if own.len() < 3 {
+                self.small += 1;
+                continue;
+            }
+            self.face(&own);
+            if own_places.len() == 2 * own.len() {
+                let before = self.mesh.corners.len() - own.len();
+                self.mesh.corner_uvs.resize(before, NONE);
+                for place in own_places.chunks_exact(2) {
+                    self.mesh.corner_uvs.push(crate::geometry::mesh::index(self.mesh.uvs.len()));
+                    self.mesh.uvs.push(DVec2::new(place[0], 1.0 - place[1]));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Strips of triangles, one after the other in a list, with -1 between.
+    fn strips(&mut self, element: &Element, body: &mut Body<'_>) -> Result<(), PlyFault> {
+        let corners = element.find(&CORNERS);
+        for row in 0..element.count {
+            let mut own = Vec::new();
+            body.row(element, row, |column, values| {
+                if Some(column) == corners {
+                    own = values.to_vec();
+                }
+                Ok(())
+            })?;
+            for strip in own.split(|index| *index == -1.0) {
+                let strip = strip.iter().map(|index| self.corner(element, row, *index));
+                let strip = strip.collect::<Result<Vec<u32>, _>>()?;
+                for (at, triangle) in strip.windows(3).enumerate() {
+                    let [a, b, c] = [triangle[0], triangle[1], triangle[2]];
+                    // Corners that repeat only lead on to the next strip.
+                    if a != b && b != c && c != a {
+                        self.face(&if at % 2 == 0 { [a, b, c] } else { [b, a, c] });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn corner(&self, element: &Element, row: u64, index: f64) -> Result<u32, PlyFault> {
+        let count = self.mesh.points.len();
+        if index >= 0.0 && index < count as f64 && index.fract() == 0.0 {
+            return Ok(crate::geometry::number::floor_count(index));
+        }
+        Err(PlyFault::Index { element: element.name.clone(), row: row + 1, index, count })
+    }
+
+    fn face(&mut self, corners: &[u32]) {
+        self.mesh.push_face(&[corners], None, 0);
+    }
+
+    fn finish(mut self, header: &Header, options: &ImportOptions) -> Result<Imported, ImportError> {
+        let points = self.mesh.points.len();
+        if self.mesh.faces.is_empty() {
+            return Err(ImportError::NoFaces { vertices: crate::geometry::number::count_of(points) });
+        }
+        let corners = || self.mesh.corners.iter().map(|point| point.0).collect::<Vec<_>>();
+        let mut notes = Vec::new();
+        let mut tell = |message: String| notes.push(Note { line: None, message });
+        if self.normals.iter().all(|normal| *normal != DVec3::ZERO) && !self.normals.is_empty() {
+            self.mesh.corner_normals = corners();
+            self.mesh.normals = self.normals;
+        } else if !self.normals.is_empty() {
+            tell("some normals have no length; normals are found from the faces".to_owned());
+        }
+        if self.mesh.uvs.is_empty() && !self.places.is_empty() {
+            self.mesh.corner_uvs = corners();
+            self.mesh.uvs = self.places;
+        } else if !self.mesh.uvs.is_empty() {
+            self.mesh.corner_uvs.resize(self.mesh.corners.len(), NONE);
+        }
+        if self.small > 0 {
+            tell(format!("{} faces have fewer than three corners and are left out", self.small));
+        }
+        let colored = header.elements.iter().any(|element| element.find(&COLORS).is_some());
+        if colored {
+            tell("its colors are left out: looks are those of materials".to_owned());
+        }
+        if let Some(weld) = options.weld {
+            self.mesh.weld(weld);
+        }
+        Ok(Imported { mesh: self.mesh, materials: Vec::new(), groups: Vec::new(), notes })
+    }
+}
+
+#[cfg(test)]
+mod tests;
