@@ -129,6 +129,25 @@ pub fn compile_profiles(
     Ok(all)
 }
 
+/// The names of the files that a document certainly becomes, without making them; levels of detail in files of their own are
+/// not among them, for some may turn out to be none. All files that a bake would read are read.
+///
+/// # Errors
+/// Everything that is wrong with the document before its surfaces are cut.
+pub fn outputs(
+    document: &Document,
+    files: &dyn Files,
+    options: &Options,
+) -> Result<Vec<String>, Diagnostics> {
+    let (spec, _) = document.spec(options.variant.as_deref(), &options.overrides)?;
+    state::model(document, &spec, files, options)?;
+    let profiles = profiles(&spec, options);
+    if let Some(same) = same_file(document, &spec, &profiles) {
+        return Err(document.diagnostics(vec![same]));
+    }
+    Ok(profiles.into_iter().map(|profile| file_name(options, profile, 0)).collect())
+}
+
 /// For whom an asset is, each once.
 fn profiles(spec: &Spec, options: &Options) -> Vec<Profile> {
     let mut all = options.profiles.clone();

@@ -70,6 +70,8 @@ pub(crate) enum Command {
     Check(Check),
     /// Format documents; comments stay
     Fmt(Fmt),
+    /// Print what a bake would read and write, for other builds
+    Plan(Plan),
     /// Draw a picture of a document or of a .glb file
     Render(Render),
     /// Bake a document on every save, and show it in a page
@@ -127,7 +129,7 @@ pub(crate) struct Shard {
 }
 
 /// Records of what came of documents.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(crate) struct RecordOptions {
     /// Write errors and warnings as SARIF too, for code scanning
     #[arg(long, value_name = "FILE")]
@@ -163,6 +165,35 @@ pub(crate) struct Bake {
     pub(crate) cache: CacheOptions,
     #[command(flatten)]
     pub(crate) records: RecordOptions,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Plan {
+    #[command(flatten)]
+    pub(crate) documents: Documents,
+    /// Where outputs would go
+    #[arg(short, long, value_name = "DIR", default_value = "out")]
+    pub(crate) out: PathBuf,
+    /// What the plan is written as
+    #[arg(long = "as", value_enum, default_value_t = PlanFormat::Json)]
+    pub(crate) form: PlanFormat,
+    /// For whom files would be
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = profile)]
+    pub(crate) profile: Vec<Profile>,
+    /// Without reports
+    #[arg(long)]
+    pub(crate) no_report: bool,
+}
+
+/// What a plan is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PlanFormat {
+    /// A list of steps
+    Json,
+    /// A file for Ninja
+    Ninja,
+    /// A file for GNU Make, 4.3 or later
+    Make,
 }
 
 /// What is remembered of earlier runs.

@@ -327,7 +327,7 @@ struct Made {
 }
 
 /// The path of an input from the working directory, where it lies in that.
-fn shown(task: &Task, path: &str) -> String {
+pub(crate) fn shown(task: &Task, path: &str) -> String {
     let whole = task.root.join(path);
     let here = std::env::current_dir().and_then(|here| here.canonicalize());
     let below = here.ok().and_then(|here| whole.strip_prefix(here).ok().map(Path::to_path_buf));

@@ -45,7 +45,8 @@ impl Dependencies {
     }
 }
 
-fn escaped(path: &str) -> String {
+/// A path as Make reads it.
+pub(crate) fn escaped(path: &str) -> String {
     let mut text = String::new();
     for letter in path.chars() {
         match letter {

@@ -15,6 +15,7 @@ mod gallery;
 mod html;
 mod inspect;
 mod output;
+mod plan;
 mod project;
 mod records;
 mod render;
@@ -74,6 +75,7 @@ pub fn run() -> ExitCode {
         Command::Bake(bake) => bake::run(&bake, &printer),
         Command::Check(check) => check::run(&check, &printer),
         Command::Fmt(fmt) => format::run(&fmt, &printer),
+        Command::Plan(plan) => plan::run(&plan, &printer),
         Command::Render(render) => render::run(&render, &printer),
         Command::Watch(watch) => watch::run(&watch, &printer),
         Command::Sample(sample) => sample::run(&sample, &printer),

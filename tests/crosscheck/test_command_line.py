@@ -113,6 +113,54 @@ def test_depfile_is_read_by_make(kiln: Kiln) -> None:
     assert "common\\ parts/clay.toml" in (kiln.folder / "out" / "model.d").read_text()
 
 
+def planned(kiln: Kiln) -> None:
+    """A folder of two documents with an include, a variant and names that need escapes."""
+    (kiln.folder / "specs" / "a b").mkdir(parents=True)
+    kiln.write("[material.clay]\n", "specs/common $1")
+    body = 'include = ["{}common $1.toml"]\n[shape.s]\nmaterial = "clay"\n[shape.s.box]\nsize = [1, 1, 1]\n'
+    kiln.write(body.format("../"), "specs/a b/inner")
+    kiln.write(body.format("") + "[variant.red.material.clay]\ncolor = '#ff0000'\n", "specs/outer")
+    kiln.write(BOX, "specs/plain")
+
+
+def test_plan_lists_what_a_bake_reads_and_writes(kiln: Kiln) -> None:
+    planned(kiln)
+    done = kiln.run("plan", "specs", "--profile", "core,web")
+    assert done.returncode == 0, done.stderr
+    assert not (kiln.folder / "out").exists()
+    steps = {step["spec"]: step for step in json.loads(done.stdout)["steps"]}
+    assert set(steps) == {"specs/a b/inner.toml", "specs/outer.toml", "specs/plain.toml"}
+    assert sorted(steps["specs/outer.toml"]["inputs"]) == ["specs/common $1.toml", "specs/outer.toml"]
+    for step in steps.values():
+        command = step["command"]
+        assert command[0] == "kiln"
+        assert kiln.run(*command[1:]).returncode == 0
+    made = sorted(f"out/{name}" for name in written(kiln))
+    assert made == sorted(output for step in steps.values() for output in step["outputs"])
+    kiln.write("[shape.s.box]\nsize = 3\n", "specs/wrong")
+    assert kiln.run("plan", "specs").returncode == 1
+
+
+def test_plan_is_built_by_make(kiln: Kiln) -> None:
+    planned(kiln)
+    (kiln.folder / "Makefile").write_text(kiln.run("plan", "specs", "--as", "make").stdout, encoding="utf-8")
+    tools = kiln.folder / "tools"
+    tools.mkdir()
+    (tools / "kiln").symlink_to(kiln.program)
+    path = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}"}
+
+    def made() -> list[str]:
+        done = subprocess.run(["make", "-j2"], cwd=kiln.folder, capture_output=True, text=True, check=True, env=path)
+        return sorted(line for line in done.stdout.splitlines() if line.startswith("kiln "))
+
+    assert len(made()) == 3
+    assert len(written(kiln)) == 8
+    assert made() == []
+    later = time.time() + 10
+    os.utime(kiln.folder / "specs" / "plain.toml", (later, later))
+    assert [line.split()[2] for line in made()] == ["specs/plain.toml"]
+
+
 def test_set_overrides_a_parameter(kiln: Kiln) -> None:
     spec = "[parameters]\nh = 1.0\n[shape.s.box]\nsize = [1, '= 2 * h', 1]\n"
     assert kiln.bake(spec, "--set", "h=0.3").shape("s")["volume"] == pytest.approx(0.6)
