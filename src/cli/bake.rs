@@ -12,7 +12,7 @@ use super::baked::baked;
 use super::cache;
 use super::dependencies::Dependencies;
 use super::output::Printer;
-use super::project::{Work, each, tasks};
+use super::project::{Work, each, loaded, tasks};
 use super::records::write;
 use super::turns::Message;
 use crate::cache::{Baked, Cache, Hit, Key, Record};
@@ -80,19 +80,9 @@ impl Worker<'_> {
         if let Some(outcome) = self.known((index, task), &key, messages) {
             return outcome;
         }
-        let (files, document) = match task.load() {
+        let (files, document) = match loaded(task, messages) {
             Ok(loaded) => loaded,
-            Err(error) => {
-                messages.push(Message::Failure(format!("{}: {}", task.path, reason(&error))));
-                return Outcome::Files;
-            }
-        };
-        let document = match document {
-            Ok(document) => document,
-            Err(list) => {
-                messages.push(Message::Diagnostics(list));
-                return Outcome::Errors;
-            }
+            Err(outcome) => return outcome,
         };
         if task.found && document.is_library() {
             if self.printer.verbose {

@@ -5,10 +5,10 @@ use serde_json::json;
 use super::Outcome;
 use super::arguments::Check;
 use super::output::Printer;
-use super::project::{Work, each, tasks};
+use super::project::{Work, each, loaded, tasks};
 use super::turns::Message;
 use crate::compile::{Options, compile};
-use crate::project::{Task, Told, reason};
+use crate::project::{Task, Told};
 
 /// Checks all documents, to the end of the pipeline: what passes here can be baked.
 pub(crate) fn run(check: &Check, printer: &Printer) -> Outcome {
@@ -18,19 +18,9 @@ pub(crate) fn run(check: &Check, printer: &Printer) -> Outcome {
 }
 
 fn document(check: &Check, task: &Task, messages: &mut Vec<Message>) -> Outcome {
-    let (files, document) = match task.load() {
+    let (files, document) = match loaded(task, messages) {
         Ok(loaded) => loaded,
-        Err(error) => {
-            messages.push(Message::Failure(format!("{}: {}", task.path, reason(&error))));
-            return Outcome::Files;
-        }
-    };
-    let document = match document {
-        Ok(document) => document,
-        Err(list) => {
-            messages.push(Message::Diagnostics(list));
-            return Outcome::Errors;
-        }
+        Err(outcome) => return outcome,
     };
     if task.found && document.is_library() {
         return Outcome::Good;

@@ -15,11 +15,11 @@ use super::arguments::{Plan, PlanFormat, RecordOptions};
 use super::bake::shown;
 use super::dependencies::escaped;
 use super::output::Printer;
-use super::project::{Work, each, tasks};
+use super::project::{Work, each, loaded, tasks};
 use super::turns::Message;
 use crate::compile::{Options, outputs};
 use crate::language::source::Files as _;
-use crate::project::{Task, reason};
+use crate::project::Task;
 
 /// What one document takes and becomes.
 struct Step {
@@ -61,20 +61,16 @@ fn step(
     (turn, task): (usize, &Task),
     messages: &mut Vec<Message>,
 ) -> Result<Option<Step>, Outcome> {
-    let (files, document) = task.load().map_err(|error| {
-        messages.push(Message::Failure(format!("{}: {}", task.path, reason(&error))));
-        Outcome::Files
-    })?;
-    let mut refused = |list| {
-        messages.push(Message::Diagnostics(list));
-        Outcome::Errors
-    };
-    let document = document.map_err(&mut refused)?;
+    let (files, document) = loaded(task, messages)?;
     if task.found && document.is_library() {
         return Ok(None);
     }
     let folder =
         task.output.rsplit_once('/').map_or_else(|| plan.out.clone(), |(folder, _)| plan.out.join(folder));
+    let mut refused = |list| {
+        messages.push(Message::Diagnostics(list));
+        Outcome::Errors
+    };
     let mut names = Vec::new();
     for variant in std::iter::once(None).chain(document.variants().into_iter().map(Some)) {
         let options = Options {

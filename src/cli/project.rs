@@ -11,7 +11,9 @@ use super::arguments::{Documents, RecordOptions};
 use super::output::Printer;
 use super::records::Records;
 use super::turns::{Message, Turns};
-use crate::project::{Task, collect};
+use crate::language::Document;
+use crate::language::source::DiskFiles;
+use crate::project::{Task, collect, reason};
 
 /// The documents that the arguments name, of which one shard; `None` after a complaint.
 pub(crate) fn tasks(documents: &Documents, printer: &Printer) -> Option<Vec<Task>> {
@@ -56,6 +58,19 @@ pub(crate) fn task(path: &Path, root: Option<&Path>) -> Result<Task, String> {
         return Ok(tasks.remove(0));
     }
     Err(format!("{} is not a document", path.display()))
+}
+
+/// A document with the files that it is read from; what is wrong with it is said.
+pub(crate) fn loaded(task: &Task, messages: &mut Vec<Message>) -> Result<(DiskFiles, Document), Outcome> {
+    let (files, document) = task.load().map_err(|error| {
+        messages.push(Message::Failure(format!("{}: {}", task.path, reason(&error))));
+        Outcome::Files
+    })?;
+    let document = document.map_err(|list| {
+        messages.push(Message::Diagnostics(list));
+        Outcome::Errors
+    })?;
+    Ok((files, document))
 }
 
 /// How documents are worked on.

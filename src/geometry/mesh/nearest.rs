@@ -188,7 +188,8 @@ mod tests {
         assert!((distance_between(&small, &large) - 0.5).abs() < 1e-12);
         let mut half = small.clone();
         half.triangles.truncate(10);
-        assert_eq!(distance_between(&small, &small), 0.0);
+        // Feet on triangles of size 1 are rounded.
+        assert!(distance_between(&small, &small) < 1e-15);
         assert!(distance_between(&half, &small) > 0.3 && distance_between(&small, &half) > 0.3);
         assert_eq!(distance_between(&small, &Mesh::default()), f64::INFINITY);
     }
