@@ -2,6 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use kiln::compile::{Compiled, Options};
 use kiln::language::Document;
@@ -19,17 +20,33 @@ fn entries(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("specs")
+}
+
+/// The path of a file from the project root.
+fn name(file: &Path) -> String {
+    let place = file.strip_prefix(env!("CARGO_MANIFEST_DIR")).expect("inside");
+    place.to_string_lossy().replace('\\', "/")
+}
+
+/// The documents of the gallery.
+fn documents() -> Vec<PathBuf> {
+    let folders = entries(&root()).into_iter().filter(|path| path.is_dir());
+    let files = folders.flat_map(|folder| entries(&folder));
+    files.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect()
+}
+
+/// Whether a document has something to show, and is no library.
+fn shows(file: &Path) -> bool {
+    std::fs::read_to_string(file).expect("specs are text").contains("[shape")
+}
+
 /// Documents to damage: the gallery, and one that uses the rest of the language.
 fn seeds() -> Vec<(String, String)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("specs");
-    let mut seeds = Vec::new();
-    for folder in entries(&root).iter().filter(|path| path.is_dir()) {
-        for file in entries(folder).iter().filter(|path| path.extension().is_some_and(|end| end == "toml")) {
-            let place = file.strip_prefix(env!("CARGO_MANIFEST_DIR")).expect("inside");
-            let name = place.to_string_lossy().replace('\\', "/");
-            seeds.push((name, std::fs::read_to_string(file).expect("specs are text")));
-        }
-    }
+    let shown = documents().into_iter().filter(|file| shows(file));
+    let seed = |file: PathBuf| (name(&file), std::fs::read_to_string(&file).expect("specs are text"));
+    let mut seeds: Vec<(String, String)> = shown.map(seed).collect();
     seeds.push(("specs/own.toml".to_owned(), OWN.to_owned()));
     assert!(seeds.len() > 30);
     seeds
@@ -166,16 +183,22 @@ fn damaged(text: &str, dice: &mut Dice) -> String {
     tokens.concat()
 }
 
+/// What documents of the gallery read: pictures, models, and documents that show nothing by themselves.
+fn inputs() -> &'static [(String, Vec<u8>)] {
+    static INPUTS: OnceLock<Vec<(String, Vec<u8>)>> = OnceLock::new();
+    INPUTS.get_or_init(|| {
+        let pictures = entries(&root().join("inputs")).into_iter();
+        let libraries = documents().into_iter().filter(|file| !shows(file));
+        pictures
+            .chain(libraries)
+            .map(|file| (name(&file), std::fs::read(&file).expect("it is there")))
+            .collect()
+    })
+}
+
 fn run(path: &str, text: &str) -> Result<Compiled, Diagnostics> {
-    let files = MemoryFiles::new()
-        .with(path, text)
-        .with("specs/inputs/label.png", include_bytes!("../../specs/inputs/label.png").as_slice())
-        .with("specs/inputs/crate-color.png", include_bytes!("../../specs/inputs/crate-color.png").as_slice())
-        .with(
-            "specs/inputs/crate-normal.png",
-            include_bytes!("../../specs/inputs/crate-normal.png").as_slice(),
-        )
-        .with("specs/inputs/bird.obj", include_str!("../../specs/inputs/bird.obj"));
+    let files = inputs().iter().fold(MemoryFiles::new(), |files, (name, bytes)| files.with(name, bytes));
+    let files = files.with(path, text);
     let document = Document::load(path, &files)?;
     kiln::compile(&document, &files, &Options { name: "x".to_owned(), ..Options::default() })
 }
