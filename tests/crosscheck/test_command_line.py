@@ -255,8 +255,8 @@ def test_hostile_models(kiln: Kiln, cases: Path) -> None:
 
 @pytest.mark.cases
 def test_foreign_formats_are_refused_with_what_to_do(kiln: Kiln, cases: Path) -> None:
-    files = [*(cases / "hostile" / "gltf").iterdir(), *(cases / "hostile" / "md2").iterdir()]
-    assert len(files) == 8
+    files = list((cases / "hostile" / "gltf").iterdir())
+    assert len(files) == 4
     for file in sorted(files):
         shutil.copy(file, kiln.folder / file.name)
         kiln.write(f'[shape.s.import]\nfile = "{file.name}"\n')
