@@ -15,7 +15,7 @@ mod record;
 mod stamp;
 mod store;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use blake3::Hash;
@@ -173,12 +173,4 @@ pub fn clear(folder: &Path) -> std::io::Result<Stats> {
 /// When there is none in the folder, or it cannot be read.
 pub fn verify(folder: &Path) -> std::io::Result<Verified> {
     Store::existing(folder)?.verify()
-}
-
-/// Where a cache is when nobody says: `kiln` in the user's folder for such, if there is one.
-#[must_use]
-pub fn default_folder() -> Option<PathBuf> {
-    let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-    let home = || set("HOME").map(|home| home.join(".cache"));
-    set("XDG_CACHE_HOME").or_else(|| set("LOCALAPPDATA")).or_else(home).map(|folder| folder.join("kiln"))
 }
