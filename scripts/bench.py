@@ -3,9 +3,9 @@
 
     scripts/bench.py                  vase, sweep and loft on a fixed grid, the vase within 0.1 mm, peak memory,
                                       evaluation of curves, the teapot, a face at equal deviation, evaluation
-                                      of surfaces, height maps, booleans, every spec of the gallery
+                                      of surfaces, height maps, booleans, weights by heat, every spec of the gallery
     scripts/bench.py --only vase      one part: vase, sweep, loft, tolerance, memory, curves, teapot, face,
-                                      surfaces, heights, booleans or gallery
+                                      surfaces, heights, booleans, weights or gallery
     scripts/bench.py --large          memory up to an output of 1 GB
     scripts/bench.py --json FILE      the figures as JSON too
     scripts/bench.py --readme         also renews the tables between the markers in README.md
@@ -28,7 +28,7 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-from peers import booleans, evaluation, gallery, heights, models, specs, surfaces
+from peers import booleans, evaluation, gallery, heights, models, motion, specs, surfaces
 from peers.process import Runs, together
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -49,6 +49,7 @@ PARTS = (
     "surfaces",
     "heights",
     "booleans",
+    "weights",
     "gallery",
 )
 
@@ -114,6 +115,9 @@ def measure(part: str, folder: Path, options: argparse.Namespace) -> Part:
             ("manifold3d", [str(PYTHON), str(PEERS / "peer_booleans.py")]),
         ]
         return booleans.measure(KILN, peers, folder, options.runs, tell)
+    if part == "weights":
+        peer = [str(PYTHON), str(ROOT / "tests" / "crosscheck" / "blender_weights.py")]
+        return motion.measure(KILN, peer, folder, options.runs, tell)
     if part == "gallery":
         return gallery.measure(KILN, ROOT / "specs", folder, options.runs, tell)
     return tolerance(folder) if part == "tolerance" else grid(part, folder, options.runs)
@@ -256,24 +260,19 @@ def tables(figures: dict[str, Any]) -> str:
     blocks = [f"Measured on {figures['machine']}, {figures['date']}, median of {figures['runs']} whole processes."]
     cases = [case for case in ("vase", "sweep", "loft") if case in figures]
     blocks += [grid_table(case, figures[case]["rows"]) for case in cases]
-    if "tolerance" in figures:
-        blocks.append(tolerance_table(figures["tolerance"]["rows"]))
-    if "memory" in figures:
-        blocks.append(memory_table(figures["memory"]["rows"]))
-    if "curves" in figures:
-        blocks.append(curves_table(figures["curves"]["rows"]))
-    if "teapot" in figures:
-        blocks.append(teapot_table(figures["teapot"]["rows"]))
-    if "face" in figures:
-        blocks.append(face_table(figures["face"]["rows"]))
-    if "surfaces" in figures:
-        blocks.append(surfaces_table(figures["surfaces"]["rows"]))
-    if "heights" in figures:
-        blocks.append(heights_table(figures["heights"]["rows"]))
-    if "booleans" in figures:
-        blocks.append(booleans_table(figures["booleans"]["rows"]))
-    if "gallery" in figures:
-        blocks.append(gallery_table(figures["gallery"]["rows"]))
+    others = {
+        "tolerance": tolerance_table,
+        "memory": memory_table,
+        "curves": curves_table,
+        "teapot": teapot_table,
+        "face": face_table,
+        "surfaces": surfaces_table,
+        "heights": heights_table,
+        "booleans": booleans_table,
+        "weights": weights_table,
+        "gallery": gallery_table,
+    }
+    blocks += [table(figures[part]["rows"]) for part, table in others.items() if part in figures]
     return "\n\n".join(blocks)
 
 
@@ -415,6 +414,18 @@ def booleans_table(rows: list[dict[str, Any]]) -> str:
         else [row["tool"], "failed", *["-"] * (len(head) - 2)]
         for row in rows
     ]  # fmt: skip
+    return markdown(head, body)
+
+
+def weights_table(rows: list[dict[str, Any]]) -> str:
+    """Weights by heat by both tools."""
+    head = ["50 000 points, 50 bones, weights by heat", "ms, from files to a file", "ms, weights alone", "of Blender's"]
+    body = [
+        [row["tool"], thousandths(row["seconds"]), thousandths(row["weights"]), ratio(row.get("of-blender"))]
+        if row["failure"] is None
+        else [row["tool"], "failed", "-", "-"]
+        for row in rows
+    ]
     return markdown(head, body)
 
 

@@ -450,6 +450,7 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
         RealizeError::Unweighted { .. } | RealizeError::SkinnedWire { .. } => {
             (Code::Unweighted, "see its skin")
         }
+        RealizeError::Unseen { .. } => (Code::UnseenBones, "see its skin"),
         RealizeError::MorphedWire | RealizeError::Topology { .. } | RealizeError::State { .. } => {
             (Code::BadMorph, "see its states")
         }

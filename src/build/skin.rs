@@ -48,6 +48,7 @@ impl Builder<'_> {
         let rule = match written.weights.value {
             spec::WeightRule::Rigid => WeightRule::Rigid,
             spec::WeightRule::Envelope => WeightRule::Envelope,
+            spec::WeightRule::Heat => WeightRule::Heat,
             spec::WeightRule::Explicit => {
                 let formulas = self.weight_formulas(&written.weight)?;
                 let mut pairs: Vec<(usize, Formula)> = joints.iter().copied().zip(formulas).collect();

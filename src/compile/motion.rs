@@ -25,16 +25,32 @@ pub(super) fn refused(built: &Built, shape: ShapeHandle, error: &RealizeError) -
                 ),
             )
         }
+        RealizeError::Unseen { skin, parts, count, of, place, nearest } => {
+            let [x, y, z] = place.to_array().map(short);
+            let bones = &built.model.skeletons[built.model.skins[*skin].skeleton].skeleton.joints;
+            let (which, nearest) = (
+                if *parts == 1 { "a part".to_owned() } else { format!("{parts} parts") },
+                &bones[*nearest].bone.name,
+            );
+            let message = format!(
+                "{which} of shape `{name}`, with {count} of its {of} points, cannot be heated: at [{x}, {y}, {z}] the nearest bone, of joint `{nearest}`, lies behind the surface, and so everywhere on it"
+            );
+            (*skin, message)
+        }
         _ => return None,
     };
     let span = built.skin_places.get(skin).copied().unwrap_or(Span::NONE);
-    let report = Diagnostic::error(Code::Unweighted, message)
+    let unseen = matches!(error, RealizeError::Unseen { .. });
+    let report = Diagnostic::error(if unseen { Code::UnseenBones } else { Code::Unweighted }, message)
         .at(span, "this skin")
         .also(place(built, shape), "this shape");
     Some(match (&built.model.skins[skin].rule, error) {
         (_, RealizeError::SkinnedWire { .. }) => {
             report.help("draw a thin profile along its curves with `sweep`")
         }
+        (_, RealizeError::Unseen { .. }) => report.help(
+            "let a bone of its own run through it, join it to the rest with `union`, or write `weights = \"rigid\"`",
+        ),
         (WeightRule::Explicit(_), _) => report.help("write formulas that are greater than 0 there"),
         _ => report
             .help("write a greater `radius` or `falloff` for the joints near it, or `weights = \"rigid\"`"),

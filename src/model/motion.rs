@@ -65,6 +65,8 @@ pub enum WeightRule {
     Rigid,
     /// By envelopes.
     Envelope,
+    /// By heat from the bones.
+    Heat,
     /// For each of the skin's joints a formula of x, y and z in the document's unit and axes.
     Explicit(Vec<Formula>),
 }

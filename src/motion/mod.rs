@@ -9,6 +9,7 @@
 //!
 //! Lengths are metres, y is up, angles are degrees where they are written and radians nowhere in interfaces.
 
+mod heat;
 mod inverse;
 mod law;
 mod limit;
@@ -21,6 +22,7 @@ mod skin;
 mod track;
 mod transform;
 
+pub use heat::{HeatFault, heat_weights};
 pub use inverse::{Angles, Goal, InverseKinematics, Reached, Search, Stand};
 pub use law::{Interpolation, Keys, Law, LawFault, Speed};
 pub use limit::{Axis, Excess, Limits, Range};

@@ -52,12 +52,18 @@ impl Joint {
         DAffine3::from_rotation_translation(self.frame, self.bone.head)
     }
 
+    /// The point of the bone that is nearest to another.
+    #[must_use]
+    pub fn nearest(&self, point: DVec3) -> DVec3 {
+        let along = self.bone.tail - self.bone.head;
+        let share = ((point - self.bone.head).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        self.bone.head + along * share
+    }
+
     /// Distance from a point to the bone.
     #[must_use]
     pub fn distance(&self, point: DVec3) -> f64 {
-        let along = self.bone.tail - self.bone.head;
-        let share = ((point - self.bone.head).dot(along) / along.length_squared()).clamp(0.0, 1.0);
-        point.distance(self.bone.head + along * share)
+        point.distance(self.nearest(point))
     }
 
     /// Length of the bone.

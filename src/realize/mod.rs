@@ -137,6 +137,22 @@ pub enum RealizeError {
         /// How far that one is from the nearest bone, in the document's unit.
         distance: f64,
     },
+    /// Parts of a skin by heat that see no bone.
+    #[error("{count} of its {of} points see no bone")]
+    Unseen {
+        /// Index of the skin.
+        skin: usize,
+        /// How many parts.
+        parts: usize,
+        /// How many points they have.
+        count: usize,
+        /// Of how many.
+        of: usize,
+        /// Where one of them is, in the document's unit and axes.
+        place: DVec3,
+        /// The joint of the skeleton whose bone is nearest to that one.
+        nearest: usize,
+    },
     /// Lines have no states.
     #[error("it has lines, and triangles alone have states")]
     MorphedWire,

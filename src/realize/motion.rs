@@ -8,8 +8,8 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::number::Bounds;
 use crate::model::{Clip, ClipTrack, Model, NamedSkeleton, ShapeHandle, Target, WeightRule};
 use crate::motion::{
-    Influences, Joint, MorphedBox, MorphedState, Moving, Path, ReducedTrack, Rig, Track, Transform, Wanted,
-    Weights, envelope_weights, reduce, rigid_weights, weights_of,
+    HeatFault, Influences, Joint, MorphedBox, MorphedState, Moving, Path, ReducedTrack, Rig, Track,
+    Transform, Wanted, Weights, envelope_weights, heat_weights, reduce, rigid_weights, weights_of,
 };
 use crate::scene::{Animation, Channel, Geometry, MorphTarget, Node, Scene, Skin};
 
@@ -140,6 +140,7 @@ fn influences(model: &Model, index: usize, mesh: &Mesh) -> Result<Vec<Influences
             let joints: Vec<_> = joints.iter().copied().zip(envelopes).collect();
             envelope_weights(&mesh.points, &joints)
         }
+        WeightRule::Heat => heat(model, (index, &skin.joints), mesh, &joints)?,
         WeightRule::Explicit(formulas) => {
             let back = model.frame.map().inverse();
             weights_of(&mesh.points, formulas.len(), |point, weights| {
@@ -168,6 +169,26 @@ fn influences(model: &Model, index: usize, mesh: &Mesh) -> Result<Vec<Influences
         weights.smooth(mesh, skin.smoothing);
     }
     Ok(in_skeleton(&weights, &skin.joints))
+}
+
+fn heat(
+    model: &Model,
+    (skin, joints): (usize, &[usize]),
+    mesh: &Mesh,
+    bones: &[&Joint],
+) -> Result<Weights, RealizeError> {
+    let limit = model.limits.memory;
+    heat_weights(mesh, bones, limit).map_err(|fault| match fault {
+        HeatFault::Unseen { parts, count, first } => {
+            let point = mesh.points[first];
+            let nearest = (0..bones.len())
+                .min_by(|a, b| bones[*a].distance(point).total_cmp(&bones[*b].distance(point)))
+                .map_or(0, |bone| joints[bone]);
+            let place = model.frame.map().inverse().transform_point3(point);
+            RealizeError::Unseen { skin, parts, count, of: mesh.points.len(), place, nearest }
+        }
+        HeatFault::Limit { needed } => RealizeError::Limit { what: "bytes of memory", needed, limit },
+    })
 }
 
 /// Weights with the joints' indices in the skeleton, not in the skin.

@@ -76,7 +76,7 @@ fn ring() -> String {
 }
 
 /// Shapes of many kinds, each with the fewest levels that it must have.
-const MODELS: [(&str, usize); 16] = [
+const MODELS: [(&str, usize); 17] = [
     ("tolerance = 0.002\n[shape.a.sphere]\nradius = 0.7", 4),
     ("tolerance = 0.001\n[shape.a.torus]\nradius = 0.5\ntube-radius = 0.2", 4),
     ("tolerance = 0.001\n[shape.a.tube]\nradius = 0.5\ninner-radius = 0.3\nheight = 1", 3),
@@ -115,6 +115,10 @@ const MODELS: [(&str, usize); 16] = [
     ("[shape.a]\nuv = \"always\"\n[shape.a.import]\nfile = \"ring.obj\"", 3),
     (
         "tolerance = 0.002\n[shape.arm.capsule]\nradius = 0.1\nheight = 1.2\n[skeleton.s.joint.low]\nhead = [0, -0.5, 0]\ntail = [0, 0, 0]\n[skeleton.s.joint.high]\nparent = \"low\"\ntail = [0, 0.5, 0]\n[skin.k]\nshape = \"arm\"\nskeleton = \"s\"\nweights = \"rigid\"\nsmoothing = 3",
+        4,
+    ),
+    (
+        "tolerance = 0.002\n[shape.arm.capsule]\nradius = 0.1\nheight = 1.2\n[skeleton.s.chain.c]\npoints = [[0, -0.5, 0], [0, 0, 0], [0, 0.5, 0]]\n[skin.k]\nshape = \"arm\"\nskeleton = \"s\"\nweights = \"heat\"",
         4,
     ),
 ];

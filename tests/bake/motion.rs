@@ -71,9 +71,13 @@ fn joints_carry_what_is_around_their_bones() {
 fn written_weights_sum_to_255_for_every_rule() {
     let ball = "[shape.a]\nsegments = [24, 16]\n[shape.a.sphere]\nradius = 1\n[skeleton.s.chain.spine]\npoints = [[0, -1, 0], [0, -0.4, 0], [0, 0, 0], [0, 0.3, 0], [0, 0.6, 0], [0, 1, 0]]\nradius = 0.3\nfalloff = 1.2\n[skin.k]\nshape = \"a\"\nskeleton = \"s\"\n";
     let explicit = "weights = \"explicit\"\nweight = [{ joint = \"spine-1\", formula = \"= 1 - y\" }, { joint = \"spine-5\", formula = \"= 1 + y\" }]";
-    for (rule, most) in
-        [("weights = \"rigid\"", 1), ("smoothing = 0", 4), ("smoothing = 8", 4), (explicit, 2)]
-    {
+    for (rule, most) in [
+        ("weights = \"rigid\"", 1),
+        ("smoothing = 0", 4),
+        ("smoothing = 8", 4),
+        ("weights = \"heat\"", 4),
+        (explicit, 2),
+    ] {
         let baked = bake(&format!("{ball}{rule}"));
         assert_eq!(baked.report().skins["k"].most_influences, most, "{rule}");
         let attributes = &baked.glb.list("meshes")[0]["primitives"][0]["attributes"];
@@ -251,14 +255,47 @@ fn the_box_in_the_extras_covers_the_motion_and_sockets_are_marked() {
 
 #[test]
 fn motion_is_the_same_for_any_number_of_threads() {
-    let text = include_str!("../../specs/motion/fish.toml");
-    let once = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| {
-            bake_with(text, &Options { name: "fish".to_owned(), ..Options::default() }).compiled.bytes
-        })
-    };
-    assert_eq!(once(1), once(4));
+    let fish = include_str!("../../specs/motion/fish.toml");
+    let warm = fish.replace("smoothing = 2", "weights = \"heat\"");
+    assert_ne!(fish, warm);
+    for text in [fish, &warm] {
+        let once = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| {
+                bake_with(text, &Options { name: "fish".to_owned(), ..Options::default() }).compiled.bytes
+            })
+        };
+        assert_eq!(once(1), once(4));
+    }
+}
+
+/// Legs that nearly touch, each with a bone: by distance each leg would pull at the other, by heat it does not.
+#[test]
+fn heat_goes_along_the_skin_and_not_through_the_air() {
+    let leg = |side: f64| format!("{{ at = [{side}, -0.5, 0], box = {{ size = [0.2, 1.2, 0.2] }} }}");
+    let text = format!(
+        "[shape.body]\nsegments = [4, 4]\n[shape.body.union]\nof = [{}, {}, {{ at = [0, 0.2, 0], box = {{ size = [0.42, 0.4, 0.2] }} }}]\n\
+         [skeleton.s.joint.hips]\nhead = [0, 0.1, 0]\ntail = [0, 0.4, 0]\n\
+         [skeleton.s.joint.left]\nparent = \"hips\"\nhead = [-0.11, 0, 0]\ntail = [-0.11, -1.1, 0]\n\
+         [skeleton.s.joint.right]\nparent = \"hips\"\nhead = [0.11, 0, 0]\ntail = [0.11, -1.1, 0]\n\
+         [skin.k]\nshape = \"body\"\nskeleton = \"s\"\nweights = \"heat\"",
+        leg(-0.11),
+        leg(0.11)
+    );
+    let baked = bake(&text);
+    let attributes = &baked.glb.list("meshes")[0]["primitives"][0]["attributes"];
+    let weights = baked.glb.accessor(count(&attributes["WEIGHTS_0"]));
+    let joints = baked.glb.accessor(count(&attributes["JOINTS_0"]));
+    let mut soles = 0;
+    for ((place, weights), joints) in baked.glb.named("body").positions.iter().zip(&weights).zip(&joints) {
+        if place[1] > -1.0 {
+            continue;
+        }
+        let own = if place[0] < 0.0 { 1.0 } else { 2.0 };
+        assert!(joints[0] == own && weights[0] >= 250.0, "{joints:?} {weights:?} at {place:?}");
+        soles += 1;
+    }
+    assert!(soles >= 8);
 }
 
 /// Half of the tolerance never costs fewer keys, and every bound holds.

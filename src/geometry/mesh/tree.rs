@@ -48,12 +48,40 @@ impl Tree {
     /// All triangles of greater index whose boxes meet that of a triangle, until `with` says that it is enough.
     pub(super) fn visit(&self, triangle: u32, mut with: impl FnMut(u32) -> bool) {
         let own = &self.boxes[triangle as usize];
+        self.visit_where(|bounds| meet(own, bounds), |other| other <= triangle || with(other));
+    }
+
+    /// All triangles whose boxes a straight line meets, until `with` says that it is enough.
+    pub(super) fn visit_along(&self, from: DVec3, to: DVec3, with: impl FnMut(u32) -> bool) {
+        let way = to - from;
+        // As far as the line lies within all three slabs of a box at once; a little more for rounding.
+        let meets = |bounds: &Bounds| {
+            let (mut enter, mut leave) = (-1e-9_f64, 1.0_f64 + 1e-9);
+            for axis in 0..3 {
+                let (low, high) = (bounds.min[axis] - from[axis], bounds.max[axis] - from[axis]);
+                if way[axis] == 0.0 {
+                    if low > 0.0 || high < 0.0 {
+                        return false;
+                    }
+                    continue;
+                }
+                let (a, b) = (low / way[axis], high / way[axis]);
+                enter = enter.max(a.min(b) - 1e-9);
+                leave = leave.min(a.max(b) + 1e-9);
+            }
+            enter <= leave
+        };
+        self.visit_where(meets, with);
+    }
+
+    /// All triangles whose boxes are as asked for, until `with` says that it is enough.
+    fn visit_where(&self, meets: impl Fn(&Bounds) -> bool, mut with: impl FnMut(u32) -> bool) {
         let mut stack = [0_usize; 64];
         let mut depth = 1;
         while depth > 0 {
             depth -= 1;
             let node = stack[depth];
-            if !meet(own, &self.nodes[node]) {
+            if !meets(&self.nodes[node]) {
                 continue;
             }
             if node + 1 < self.leaves {
@@ -63,7 +91,7 @@ impl Tree {
                 continue;
             }
             for other in self.members(node + 1 - self.leaves) {
-                if *other > triangle && meet(own, &self.boxes[*other as usize]) && !with(*other) {
+                if meets(&self.boxes[*other as usize]) && !with(*other) {
                     return;
                 }
             }

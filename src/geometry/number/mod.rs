@@ -8,6 +8,7 @@ mod angle;
 mod elementary;
 mod fan;
 mod noise;
+mod sparse;
 mod symmetric;
 mod tolerance;
 mod whole;
@@ -18,6 +19,7 @@ pub use elementary::{
 };
 pub use fan::{FAN, in_fan};
 pub use noise::{noise, noise_gradient};
+pub use sparse::{Factors, NotPositive, Plan, Symmetric, dissection};
 pub use symmetric::{PrincipalAxes, principal_axes};
 pub use tolerance::{Bounds, single_rounding};
 pub use whole::{count_of, floor_count, floor_index, floor_large, single, size};

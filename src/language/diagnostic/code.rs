@@ -423,6 +423,9 @@ codes! {
     /// weights of one mesh that step and run at once
     MixedWeights = "K0991";
 
+    /// a part of a skin by heat that sees no bone
+    UnseenBones = "K0992";
+
     /// a collider that belongs to no node
     ColliderPlace = "K0994";
     /// a collider without volume

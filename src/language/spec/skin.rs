@@ -36,6 +36,9 @@ choices! {
         Rigid = "rigid";
         /// By the distance to the bones: wholly within `radius` of a joint, less and less over its `falloff`.
         Envelope = "envelope";
+        /// By heat from the bones, which the skin carries along: smooth, and whole limbs go with their bones whatever the
+        /// distance through the air. Each part of the shape sees a bone that is near it.
+        Heat = "heat";
         /// By the formulas of `weight`.
         Explicit = "explicit";
     }
