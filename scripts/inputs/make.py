@@ -7,7 +7,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from inputs import bird, caterpillar, crate, label
+from inputs import beetle, bird, caterpillar, crate, label, lamp
 
 SPECS = Path(__file__).resolve().parents[2] / "specs" / "inputs"
 
@@ -22,6 +22,9 @@ def main() -> None:
     normal.write(folder / "crate-normal.png")
     (folder / "bird.obj").write_text(bird.obj(), encoding="utf-8")
     (folder / "caterpillar.md2").write_bytes(caterpillar.md2())
+    (folder / "beetle.md3").write_bytes(beetle.md3())
+    (folder / "lamp.md5mesh").write_text(lamp.md5mesh(), encoding="utf-8")
+    (folder / "lamp-bow.md5anim").write_text(lamp.md5anim(), encoding="utf-8")
     caterpillar.draw().write(folder / "caterpillar.png")
 
 

@@ -1,16 +1,16 @@
-//! Frames of files: states of the shapes that show them, and clips of their sequences.
+//! Frames of files: states of the shapes that show them, clips of their sequences, and nodes of their tags.
 
-use glam::{DAffine3, DVec4};
+use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4};
 
 use super::Builder;
-use super::import::{axes_between, default_up};
+use super::import::{axes_between, default_up, has_frames};
 use crate::geometry::mesh;
 use crate::geometry::number::single;
-use crate::import::md2::{Md2, Sequence};
+use crate::import::keyframes::{Keyframes, Sequence};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, Import, Shape as Kind, Sp, closest, kebab};
-use crate::model::{Clip, ClipTrack, Morph, Recipe, Shape, ShapeHandle, Space, State, Target};
+use crate::model::{Clip, ClipTrack, Morph, Node, Recipe, Shape, ShapeHandle, Space, State, Target};
 use crate::motion::{Course, Interpolation, Keys, Law};
 
 /// Samples a second of the exact motion, to begin with.
@@ -26,12 +26,21 @@ pub(super) struct Played<'a> {
     sequences: Vec<Sequence>,
     /// For each frame of the file its target; none for the one that is the shape.
     targets: Vec<Option<usize>>,
+    /// Nodes that move with the frames, each with its place in every frame.
+    tags: Vec<(usize, Vec<Place>)>,
     span: Span,
+}
+
+/// Where a tag is, in the document's unit and axes.
+#[derive(Clone, Copy)]
+struct Place {
+    translation: DVec3,
+    rotation: DQuat,
 }
 
 impl<'a> Builder<'a> {
     /// The number of the frame that an import names; the first where it names none.
-    pub(super) fn frame_of(&mut self, import: &Import, found: &Md2) -> Option<usize> {
+    pub(super) fn frame_of(&mut self, import: &Import, found: &Keyframes) -> Option<usize> {
         let Some(name) = &import.frame else { return Some(0) };
         let named = found.frames.iter().position(|frame| frame.name == name.value);
         if named.is_none() {
@@ -54,13 +63,16 @@ impl<'a> Builder<'a> {
         for (name, definition) in &spec.shapes {
             let Kind::Import(import) = &definition.value.kind else { continue };
             let Some(shape) = self.shapes.get(name).copied().flatten() else { continue };
-            let shown = self.model.nodes.iter().any(|node| node.shape == Some(shape));
-            let wanted = import.frames.value == spec::Frames::All && import.file.value.extension() == "md2";
-            if shown && wanted {
+            if has_frames(&import.file) && !self.showing(shape).is_empty() {
                 all.extend(self.frames_of(name, shape, import, definition.span));
             }
         }
         all
+    }
+
+    /// The nodes that show a shape.
+    fn showing(&self, shape: ShapeHandle) -> Vec<usize> {
+        (0..self.model.nodes.len()).filter(|node| self.model.nodes[*node].shape == Some(shape)).collect()
     }
 
     fn frames_of(
@@ -71,14 +83,18 @@ impl<'a> Builder<'a> {
         span: Span,
     ) -> Option<Played<'a>> {
         // The shape was read, so that this succeeds again.
-        let found = self.read_md2(import)?;
+        let found = self.read_keyframes(import)?;
         let own = self.frame_of(import, &found)?;
         let sequences = self.sequences_of(import, &found)?;
         let axes =
             axes_between(import.up.map_or_else(|| default_up(&import.file), |up| up.value), self.spec.up);
         let map = DAffine3::from_mat3(axes * import.scale.value);
         let base = self.model.shape(shape).clone();
-        let Recipe::Polygons { mesh: faces, materials } = base.recipe else { return None };
+        let tags = self.tags_of(&found, own, (shape, axes, import.scale.value));
+        if import.frames.value == spec::Frames::One {
+            return None;
+        }
+        let Recipe::Polygons { materials, .. } = base.recipe else { return None };
         let mut names: Vec<String> = Vec::with_capacity(found.frames.len());
         let mut targets = Vec::with_capacity(found.frames.len());
         for (number, frame) in found.frames.iter().enumerate() {
@@ -89,8 +105,8 @@ impl<'a> Builder<'a> {
                 continue;
             }
             targets.push(Some(targets.iter().flatten().count()));
-            let mut mesh = faces.clone();
-            mesh.points = frame.points.iter().map(|point| map.transform_point3(*point)).collect();
+            let mut mesh = found.at(number);
+            mesh.transform(&map);
             let recipe = Recipe::Polygons { mesh, materials: materials.clone() };
             let handle = ShapeHandle(mesh::index(self.model.shapes.len()));
             let state = Shape { name: format!("{name}.{target}"), recipe, options: base.options.clone() };
@@ -100,10 +116,50 @@ impl<'a> Builder<'a> {
             self.model.morphs.push(Morph { name: target, shape, weight: 0.0, state: State::Shape(handle) });
             self.morph_places.push(span);
         }
-        Some(Played { shape, import, sequences, targets, span })
+        Some(Played { shape, import, sequences, targets, tags, span })
     }
 
-    fn sequences_of(&mut self, import: &Import, found: &Md2) -> Option<Vec<Sequence>> {
+    /// Makes a node of each tag below each node that shows the shape.
+    fn tags_of(
+        &mut self,
+        found: &Keyframes,
+        own: usize,
+        (shape, axes, scale): (ShapeHandle, DMat3, f64),
+    ) -> Vec<(usize, Vec<Place>)> {
+        let placement = self.model.shape(shape).options.placement;
+        let (_, turn, _) = placement.to_scale_rotation_translation();
+        let into = turn * DQuat::from_mat3(&axes);
+        let place = |place: &DAffine3| Place {
+            translation: placement.transform_point3(axes * place.translation * scale),
+            rotation: (into * DQuat::from_mat3(&place.matrix3) * into.conjugate()).normalize(),
+        };
+        let mut all = Vec::new();
+        for parent in self.showing(shape) {
+            for (number, tag) in found.tags.iter().enumerate() {
+                let taken: Vec<String> = self.model.nodes.iter().map(|node| node.name.clone()).collect();
+                let name = kebab(&tag.name).unwrap_or_else(|| format!("tag-{}", number + 1));
+                let longer = format!("{}.{name}", self.model.nodes[parent].name);
+                let name = if taken.contains(&name) { numbered(longer, &taken) } else { name };
+                let places: Vec<Place> = tag.places.iter().map(place).collect();
+                let Place { translation, rotation } = places[own];
+                all.push((self.model.nodes.len(), places));
+                self.model.nodes.push(Node {
+                    name,
+                    shape: None,
+                    material: None,
+                    parent: Some(parent),
+                    socket: None,
+                    is_socket: true,
+                    translation,
+                    rotation,
+                    scale: DVec3::ONE,
+                });
+            }
+        }
+        all
+    }
+
+    fn sequences_of(&mut self, import: &Import, found: &Keyframes) -> Option<Vec<Sequence>> {
         if import.sequences.value == spec::Sequences::Named {
             return Some(found.sequences());
         }
@@ -160,9 +216,7 @@ impl<'a> Builder<'a> {
         let rate = played.import.frame_rate.value;
         let times: Vec<f64> = (0..order.len()).map(|k| f64::from(single(k as f64 / rate))).collect();
         let duration = times[times.len() - 1];
-        let nodes: Vec<usize> = (0..self.model.nodes.len())
-            .filter(|node| self.model.nodes[*node].shape == Some(played.shape))
-            .collect();
+        let nodes = self.showing(played.shape);
         let mut moved: Vec<usize> = order.iter().filter_map(|frame| played.targets[*frame]).collect();
         moved.sort_unstable();
         moved.dedup();
@@ -181,6 +235,11 @@ impl<'a> Builder<'a> {
                 let target = Target::Weight { node: *node, target };
                 tracks.push(ClipTrack { target, course, space: Space::Document, clamp: None });
             }
+        }
+        for (node, places) in &played.tags {
+            let courses = tag_courses(&self.model.nodes[*node], places, (&order, &times), looped);
+            let (target, space, clamp) = (Target::Node(*node), Space::Document, None);
+            tracks.extend(courses.into_iter().map(|course| ClipTrack { target, course, space, clamp }));
         }
         if tracks.is_empty() {
             return;
@@ -220,9 +279,35 @@ impl<'a> Builder<'a> {
     }
 }
 
+/// How a tag moves through some frames, where it does.
+fn tag_courses(
+    rest: &Node,
+    places: &[Place],
+    (order, times): (&[usize], &[f64]),
+    looped: bool,
+) -> Vec<Course> {
+    let mut courses = Vec::new();
+    let moved = |frame: &usize| (places[*frame].translation - rest.translation).extend(0.0);
+    let values: Vec<DVec4> = order.iter().map(moved).collect();
+    if values.iter().any(|value| *value != DVec4::ZERO) {
+        let keys = Keys::new((times.to_vec(), values), &[], Interpolation::Linear, looped);
+        courses.push(Course::Offset(Law::Keys(keys)));
+    }
+    let turned = |frame: &usize| (rest.rotation.conjugate() * places[*frame].rotation).normalize();
+    if order.iter().any(|frame| places[*frame].rotation != rest.rotation) {
+        let rotations: Vec<DQuat> = order.iter().map(turned).collect();
+        courses.push(Course::rotations(times.to_vec(), &rotations, Interpolation::Linear, looped));
+    }
+    courses
+}
+
 /// A name in kebab-case, with a number where another has it; of letters that make none, that of its number.
 fn unique(frame: &str, number: usize, taken: &[String]) -> String {
-    let name = kebab(frame).unwrap_or_else(|| format!("frame-{}", number + 1));
+    numbered(kebab(frame).unwrap_or_else(|| format!("frame-{}", number + 1)), taken)
+}
+
+/// A name, with a number where another has it.
+fn numbered(name: String, taken: &[String]) -> String {
     if !taken.contains(&name) {
         return name;
     }

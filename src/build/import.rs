@@ -6,8 +6,8 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::Builder;
 use crate::geometry::mesh;
-use crate::import::md2::{Md2, Md2Fault};
-use crate::import::{self, ImportOptions, Imported, MaterialLook};
+use crate::import::keyframes::Keyframes;
+use crate::import::{self, ImportError, ImportOptions, Imported, MaterialLook};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::{FileError, Span, join};
 use crate::language::spec::{FilePath, Import, Sp, Up};
@@ -53,7 +53,7 @@ impl Builder<'_> {
         self.report(report);
     }
 
-    fn bytes_of(&mut self, file: &Sp<FilePath>) -> Option<Arc<[u8]>> {
+    pub(super) fn bytes_of(&mut self, file: &Sp<FilePath>) -> Option<Arc<[u8]>> {
         match self.files.read(&file.value.resolved) {
             Ok(bytes) => Some(bytes),
             Err(error) => {
@@ -63,37 +63,43 @@ impl Builder<'_> {
         }
     }
 
-    /// The model of an MD2 file.
-    pub(super) fn read_md2(&mut self, import: &Import) -> Option<Md2> {
+    /// The model of a file with frames.
+    pub(super) fn read_keyframes(&mut self, import: &Import) -> Option<Keyframes> {
         let file = &import.file;
         let bytes = self.bytes_of(file)?;
-        let read = import::md2::read(&bytes).map_err(|fault| match import::recognize(&bytes) {
-            Some(foreign) if fault == Md2Fault::NotMd2 => import::ImportError::Foreign(foreign),
-            _ => fault.into(),
+        let group = import.group.as_ref().map(|group| group.value.as_str());
+        let read = match file.value.extension().as_str() {
+            "md2" => import::md2::read(&bytes).map_err(ImportError::from),
+            _ => import::md3::read(&bytes, group),
+        };
+        let read = read.map_err(|error| match import::recognize(&bytes) {
+            Some(foreign) if error.is_foreign() => ImportError::Foreign(foreign),
+            _ => error,
         });
         read.map_err(|error| self.refused(file, &error)).ok()
     }
 
-    /// The shape of an MD2 file: one of its frames.
+    /// The shape of a file with frames: one of them.
     fn framed_mesh(&mut self, import: &Import) -> Option<Imported> {
-        let group = import.group.as_ref().map(|group| ("group", group.span));
+        let md2 = import.file.value.extension() == "md2";
+        let group = import.group.as_ref().filter(|_| md2).map(|group| ("group", group.span));
         let weld = import.weld.map(|weld| ("weld", weld.span));
         if let Some((field, span)) = group.or(weld) {
-            let message =
-                format!("an MD2 file has one mesh, whose points are those of every frame: no `{field}`");
+            let what =
+                if md2 { "an MD2 file has one mesh, whose points" } else { "the points of an MD3 file" };
+            let message = format!("{what} are those of every frame: no `{field}`");
             self.report(Diagnostic::error(Code::Conflict, message).at(span, "leave it out"));
             return None;
         }
-        let found = self.read_md2(import)?;
+        let found = self.read_keyframes(import)?;
         let frame = self.frame_of(import, &found)?;
-        let mut mesh = found.mesh;
-        mesh.points.clone_from(&found.frames[frame].points);
-        Some(Imported { mesh, ..Imported::default() })
+        let mesh = found.at(frame);
+        Some(Imported { mesh, materials: found.materials, groups: found.groups, notes: Vec::new() })
     }
 
     fn read_mesh(&mut self, import: &Import) -> Option<Imported> {
         let file = &import.file;
-        if file.value.extension() == "md2" {
+        if has_frames(file) {
             return self.framed_mesh(import);
         }
         let bytes = self.bytes_of(file)?;
@@ -111,6 +117,13 @@ impl Builder<'_> {
             "stl" => import::stl::read(&bytes, &options),
             "obj" => import::obj::read(&bytes, &options, &mut open),
             "ply" => import::ply::read(&bytes, &options),
+            "md5mesh" => import::md5::mesh::read(&bytes, options.group.as_deref()).map(|found| {
+                let mut imported = found.imported;
+                if let Some(weld) = options.weld {
+                    imported.mesh.weld(weld);
+                }
+                imported
+            }),
             other => return self.unsupported(file, other, &bytes),
         };
         match read {
@@ -122,14 +135,12 @@ impl Builder<'_> {
         }
     }
 
-    fn refused(&mut self, file: &Sp<FilePath>, error: &import::ImportError) {
+    pub(super) fn refused(&mut self, file: &Sp<FilePath>, error: &ImportError) {
         let line = error.line().map_or_else(String::new, |line| format!(":{line}"));
         let message = format!("{}{line}: {error}", file.value.written);
         let code = match error {
-            import::ImportError::Foreign(_) | import::ImportError::Binary { .. } => Code::UnsupportedFormat,
-            import::ImportError::UnknownGroup { .. } | import::ImportError::EmptyGroup { .. } => {
-                Code::UnknownPart
-            }
+            ImportError::Foreign(_) | ImportError::Binary { .. } => Code::UnsupportedFormat,
+            ImportError::UnknownGroup { .. } | ImportError::EmptyGroup { .. } => Code::UnknownPart,
             _ => Code::ImportFailed,
         };
         let report = Diagnostic::error(code, message).at(file.span, "cannot be imported");
@@ -148,12 +159,12 @@ impl Builder<'_> {
                 } else {
                     format!("a .{extension} file")
                 },
-                "export it as Wavefront OBJ (.obj), STL (.stl), PLY (.ply) or Quake II model (.md2)",
+                "export it as Wavefront OBJ (.obj), STL (.stl), PLY (.ply) or a model of Quake or Doom (.md2, .md3, .md5mesh)",
             ),
         };
         let message = format!("{} is {what}, which cannot be imported", file.value.written);
         let report = Diagnostic::error(Code::UnsupportedFormat, message)
-            .at(file.span, "not OBJ, STL, PLY or MD2")
+            .at(file.span, "not OBJ, STL, PLY, MD2, MD3 or MD5")
             .help(hint);
         self.report(report);
         None
@@ -231,7 +242,16 @@ impl Builder<'_> {
     }
 }
 
-/// OBJ files have y up by custom, STL and MD2 files z.
+/// OBJ, PLY and BVH files have y up by custom, the others z.
 pub(super) fn default_up(file: &Sp<FilePath>) -> Up {
-    if matches!(file.value.extension().as_str(), "stl" | "md2") { Up::Z } else { Up::Y }
+    if matches!(file.value.extension().as_str(), "stl" | "md2" | "md3" | "md5mesh" | "md5anim") {
+        Up::Z
+    } else {
+        Up::Y
+    }
+}
+
+/// Whether a file of its name has frames.
+pub(super) fn has_frames(file: &Sp<FilePath>) -> bool {
+    matches!(file.value.extension().as_str(), "md2" | "md3")
 }

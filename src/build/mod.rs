@@ -29,6 +29,7 @@ mod joined;
 mod loft;
 mod map;
 mod material;
+mod md5;
 mod morph;
 mod motion_file;
 mod moving;
@@ -242,8 +243,9 @@ impl<'a> Builder<'a> {
     fn build_motion(&mut self, states: &[StateModel]) {
         self.skeletons();
         self.nodes();
-        self.skins();
         let played = self.frames();
+        self.attach_nodes();
+        self.skins();
         self.morphs(states);
         self.clips();
         self.sequence_clips(played);

@@ -1,9 +1,9 @@
-//! Skeletons and motions from BVH files.
+//! Skeletons from files, and motions from BVH files.
 
 use glam::{DMat3, DQuat, DVec3, DVec4};
 
 use super::Builder;
-use super::import::axes_between;
+use super::import::{axes_between, default_up};
 use super::skeleton::Draft;
 use crate::geometry::number::single;
 use crate::import::bvh::{self, Bvh, BvhJoint, Channel};
@@ -17,31 +17,33 @@ use crate::motion::{Axis, Course, Interpolation, Keys, Law, Skeleton, about};
 const MOST_NUMBERS: usize = 4_000_000;
 
 /// How the numbers of a file become those of the document.
-struct Turned {
-    axes: DMat3,
-    scale: f64,
+pub(super) struct Turned {
+    pub(super) axes: DMat3,
+    pub(super) scale: f64,
 }
 
 impl Builder<'_> {
     /// The joints of a file as if they were written.
     pub(super) fn imported_joints(&mut self, import: &Sp<spec::SkeletonImport>) -> Option<Vec<Draft>> {
-        let bvh = self.bvh(&import.file)?;
-        let turned = self.turned(import.up.value, import.scale.value);
+        let joints = match import.file.value.extension().as_str() {
+            "md5mesh" => self.md5_joints(&import.file)?,
+            _ => self.bvh(&import.file)?.joints,
+        };
+        let up = import.up.map_or_else(|| default_up(&import.file), |up| up.value);
+        let turned = self.turned(up, import.scale.value);
         let place = |offset: [f64; 3]| turned.axes * DVec3::from_array(offset) * turned.scale;
-        let mut heads: Vec<DVec3> = Vec::with_capacity(bvh.joints.len());
-        for joint in &bvh.joints {
+        let mut heads: Vec<DVec3> = Vec::with_capacity(joints.len());
+        for joint in &joints {
             let parent = joint.parent.map_or(DVec3::ZERO, |parent| heads[parent]);
             heads.push(parent + place(joint.offset));
         }
-        let bones = bvh.joints.iter().filter(|joint| joint.offset != [0.0; 3]).count().max(1) as f64;
-        let usual = bvh.joints.iter().map(|joint| place(joint.offset).length()).sum::<f64>() / bones;
+        let bones = joints.iter().filter(|joint| joint.offset != [0.0; 3]).count().max(1) as f64;
+        let usual = joints.iter().map(|joint| place(joint.offset).length()).sum::<f64>() / bones;
         let draft = |(index, joint): (usize, &BvhJoint)| Draft {
             name: joint_name(&joint.name, index),
-            parent: joint
-                .parent
-                .map(|parent| Sp::new(joint_name(&bvh.joints[parent].name, parent), import.span)),
+            parent: joint.parent.map(|parent| Sp::new(joint_name(&joints[parent].name, parent), import.span)),
             head: Some(heads[index]),
-            tail: heads[index] + bone(&bvh, index, &place, usual),
+            tail: heads[index] + bone(&joints, index, &place, usual),
             roll: 0.0,
             limits: [None; 3],
             slide: [None; 3],
@@ -50,7 +52,7 @@ impl Builder<'_> {
             falloff: None,
             span: import.span,
         };
-        Some(bvh.joints.iter().enumerate().map(draft).collect())
+        Some(joints.iter().enumerate().map(draft).collect())
     }
 
     /// The motion of a file: how long it lasts, and its tracks.
@@ -59,6 +61,9 @@ impl Builder<'_> {
         clip: &spec::Clip,
         import: &Sp<spec::MotionImport>,
     ) -> Option<(f64, Vec<ClipTrack>)> {
+        if import.file.value.extension() == "md5anim" {
+            return self.md5_motion(clip, import);
+        }
         let bvh = self.bvh(&import.file)?;
         let numbers = bvh.frames.len() * bvh.joints.len();
         if numbers > MOST_NUMBERS {
@@ -72,9 +77,7 @@ impl Builder<'_> {
         let bones = self.model.skeletons[skeleton].skeleton.clone();
         let own = self.model.skeletons[skeleton].name.clone();
         let own = self.spec.skeletons.get(&own).and_then(|definition| definition.value.import.as_ref());
-        let scale = import.scale.or(own.map(|own| own.scale)).map_or(1.0, |scale| scale.value);
-        let up = import.up.or(own.map(|own| own.up)).map_or(Up::Y, |up| up.value);
-        let turned = self.turned(up, scale);
+        let turned = self.turned_as(import, own);
         let times: Vec<f64> =
             (0..bvh.frames.len()).map(|frame| f64::from(single(frame as f64 * bvh.frame_time))).collect();
         let mut tracks = Vec::new();
@@ -139,6 +142,18 @@ impl Builder<'_> {
         courses
     }
 
+    /// As a motion says, else as the file of its skeleton is turned.
+    pub(super) fn turned_as(
+        &self,
+        import: &spec::MotionImport,
+        own: Option<&Sp<spec::SkeletonImport>>,
+    ) -> Turned {
+        let scale = import.scale.or(own.map(|own| own.scale)).map_or(1.0, |scale| scale.value);
+        let file = own.map_or(&import.file, |own| &own.file);
+        let up = import.up.or(own.and_then(|own| own.up)).map_or_else(|| default_up(file), |up| up.value);
+        self.turned(up, scale)
+    }
+
     fn turned(&self, up: Up, scale: f64) -> Turned {
         Turned { axes: axes_between(up, self.spec.up), scale }
     }
@@ -164,10 +179,10 @@ impl Builder<'_> {
 }
 
 /// The bone of a joint: to its end site, or to the middle of its children; where these stand on it, on as its parent's.
-fn bone(bvh: &Bvh, index: usize, place: &impl Fn([f64; 3]) -> DVec3, usual: f64) -> DVec3 {
-    let joint = &bvh.joints[index];
+fn bone(joints: &[BvhJoint], index: usize, place: &impl Fn([f64; 3]) -> DVec3, usual: f64) -> DVec3 {
+    let joint = &joints[index];
     let end = joint.end.map(place).filter(|end| *end != DVec3::ZERO);
-    let below: Vec<DVec3> = (bvh.joints.iter())
+    let below: Vec<DVec3> = (joints.iter())
         .filter(|other| other.parent == Some(index))
         .map(|other| place(other.offset))
         .filter(|offset| *offset != DVec3::ZERO)
@@ -182,11 +197,11 @@ fn bone(bvh: &Bvh, index: usize, place: &impl Fn([f64; 3]) -> DVec3, usual: f64)
 }
 
 /// The name of a joint as documents write names.
-fn joint_name(name: &str, index: usize) -> String {
+pub(super) fn joint_name(name: &str, index: usize) -> String {
     kebab(name).unwrap_or_else(|| format!("joint-{}", index + 1))
 }
 
-fn no_joint(name: &str, written: &str, bones: &Skeleton, span: Span) -> Diagnostic {
+pub(super) fn no_joint(name: &str, written: &str, bones: &Skeleton, span: Span) -> Diagnostic {
     let message = format!("the skeleton has no joint `{name}` for `{written}` of the file");
     let report = Diagnostic::error(Code::UnknownName, message).at(span, "moves it");
     let known = bones.joints.iter().map(|joint| joint.bone.name.as_str());

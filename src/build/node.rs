@@ -38,6 +38,7 @@ impl Builder<'_> {
                 material: None,
                 parent: None,
                 socket: None,
+                is_socket: false,
                 translation: DVec3::ZERO,
                 rotation: DQuat::IDENTITY,
                 scale: DVec3::ONE,
@@ -52,17 +53,32 @@ impl Builder<'_> {
             let shape = node.shape.as_ref().and_then(|shape| self.named_shape(&shape.value.0));
             let material = node.material.as_ref().and_then(|material| self.material(&material.value.0));
             let parent = node.parent.as_ref().and_then(|parent| spec.nodes.get_index_of(&parent.value.0));
-            let socket = node.socket.as_ref().and_then(|socket| self.socket(socket));
             self.model.nodes.push(Node {
                 name: name.clone(),
                 shape,
                 material,
                 parent,
-                socket,
+                socket: None,
+                is_socket: false,
                 translation: node.at.value,
                 rotation: rotation(node.rotate.value),
                 scale: node.scale.value.0,
             });
+        }
+    }
+
+    /// Puts nodes on the sockets that they name, once all sockets are there.
+    pub(super) fn attach_nodes(&mut self) {
+        let spec = self.spec;
+        for (index, definition) in spec.nodes.values().enumerate() {
+            let Some(name) = &definition.value.socket else { continue };
+            let node = |node: &usize| {
+                self.model.nodes[*node].is_socket && self.model.nodes[*node].name == name.value
+            };
+            match (0..self.model.nodes.len()).find(node) {
+                Some(node) => self.model.nodes[index].parent = Some(node),
+                None => self.model.nodes[index].socket = self.socket(name),
+            }
         }
     }
 }

@@ -232,7 +232,8 @@ impl Builder<'_> {
             [one] => Some(*one),
             [] => {
                 let all = self.model.skeletons.iter().flat_map(|named| &named.sockets);
-                let names: Vec<String> = all.map(|socket| socket.name.clone()).collect();
+                let nodes = self.model.nodes.iter().filter(|node| node.is_socket).map(|node| &node.name);
+                let names: Vec<String> = all.map(|socket| &socket.name).chain(nodes).cloned().collect();
                 // A skeleton that could not be built has told its own faults.
                 if self.model.skeletons.len() == self.spec.skeletons.len() {
                     self.report(unknown_joint(name, names.iter().map(String::as_str), "socket"));

@@ -49,6 +49,11 @@ impl Builder<'_> {
             spec::WeightRule::Rigid => WeightRule::Rigid,
             spec::WeightRule::Envelope => WeightRule::Envelope,
             spec::WeightRule::Heat => WeightRule::Heat,
+            spec::WeightRule::Imported => {
+                let (carrying, rule) = self.file_weights(written, &bones)?;
+                joints = carrying;
+                rule
+            }
             spec::WeightRule::Explicit => {
                 let formulas = self.weight_formulas(&written.weight)?;
                 let mut pairs: Vec<(usize, Formula)> = joints.iter().copied().zip(formulas).collect();

@@ -51,6 +51,7 @@ pub(super) fn refused(built: &Built, shape: ShapeHandle, error: &RealizeError) -
         (_, RealizeError::Unseen { .. }) => report.help(
             "let a bone of its own run through it, join it to the rest with `union`, or write `weights = \"rigid\"`",
         ),
+        (WeightRule::Given(_), _) => report.help("the points of the shape are not those of its file"),
         (WeightRule::Explicit(_), _) => report.help("write formulas that are greater than 0 there"),
         _ => report
             .help("write a greater `radius` or `falloff` for the joints near it, or `weights = \"rigid\"`"),

@@ -4,6 +4,8 @@ use thiserror::Error;
 
 use super::Foreign;
 use super::md2::Md2Fault;
+use super::md3::Md3Fault;
+use super::md5::Md5Fault;
 use super::ply::PlyFault;
 
 /// Why a file could not be imported. `Display` is a message for a diagnostic, [`ImportError::line`] its place,
@@ -149,6 +151,12 @@ pub enum ImportError {
     /// A Quake II model that is none.
     #[error(transparent)]
     Md2(#[from] Md2Fault),
+    /// A Quake III model that is none.
+    #[error(transparent)]
+    Md3(#[from] Md3Fault),
+    /// A Doom 3 model that is none.
+    #[error(transparent)]
+    Md5(#[from] Md5Fault),
     /// A PLY file that is none.
     #[error(transparent)]
     Ply(#[from] PlyFault),
@@ -174,7 +182,7 @@ impl ImportError {
             Self::BadNumber { text, .. } if text.contains(',') => {
                 "write decimals with a point, not a comma".to_owned()
             }
-            Self::BadNumber { .. } | Self::TooFewNumbers { .. } | Self::BadCorner { .. } => {
+            Self::BadNumber { .. } | Self::TooFewNumbers { .. } | Self::BadCorner { .. } | Self::Md5(_) => {
                 "the file is damaged here; export it again".to_owned()
             }
             Self::NotFinite { .. } | Self::FacetNotFinite { .. } => {
@@ -188,8 +196,8 @@ impl ImportError {
             }
             Self::UnknownGroup { known, .. } => format!("its groups are: {}", list_names(known)),
             Self::EmptyGroup { .. } => "leave `group` out, or name a group with faces".to_owned(),
-            Self::Md2(Md2Fault::NotMd2) => "let its name end as those of its format do".to_owned(),
-            Self::Truncated { .. } | Self::TooShort { .. } | Self::Md2(_) | Self::Ply(_) => {
+            _ if self.is_foreign() => "let its name end as those of its format do".to_owned(),
+            Self::Truncated { .. } | Self::TooShort { .. } | Self::Md2(_) | Self::Md3(_) | Self::Ply(_) => {
                 "the file is cut off; export it again".to_owned()
             }
             Self::Unexpected { .. } => {
@@ -199,6 +207,12 @@ impl ImportError {
             Self::Refused { .. } => "please report this file as a bug of Kiln".to_owned(),
         };
         Some(hint)
+    }
+
+    /// Whether the file does not begin as those of its format do.
+    #[must_use]
+    pub fn is_foreign(&self) -> bool {
+        matches!(self, Self::Md2(Md2Fault::NotMd2) | Self::Md3(Md3Fault::NotMd3))
     }
 
     /// The line it stands on, where there is one.
@@ -213,6 +227,7 @@ impl ImportError {
             | Self::IndexZero { line, .. }
             | Self::IndexOutOfRange { line, .. }
             | Self::Unexpected { line, .. } => Some(line),
+            Self::Md5(ref fault) => fault.line(),
             _ => None,
         }
     }

@@ -11,12 +11,13 @@ pub struct Foreign {
 
 const BLENDER: &str = "in Blender: File > Export > Wavefront (.obj), then import that file";
 const OBJ: &str = "export it as Wavefront OBJ (text) or STL from the program that made it";
+const MD4: &str = "export it as a Quake III model (.md3), or with its skeleton as a Doom 3 model (.md5mesh)";
 const MESH: &str = "open it in Blender or MeshLab and export Wavefront OBJ or STL";
 const UNPACK: &str = "unpack it first";
 const SOLID: &str = "export an STL file from your CAD program, as fine as you need it";
 
 /// First bytes of each format.
-const MAGIC: [(&[u8], Foreign); 27] = [
+const MAGIC: [(&[u8], Foreign); 29] = [
     (b"BLENDER", Foreign { name: "a Blender file", hint: BLENDER }),
     (
         b"\x28\xb5\x2f\xfd",
@@ -32,9 +33,17 @@ const MAGIC: [(&[u8], Foreign); 27] = [
     (b"COFF", Foreign { name: "an OFF file", hint: MESH }),
     (b"PK\x03\x04", Foreign { name: "a ZIP archive (3MF and USDZ are, too)", hint: UNPACK }),
     (b"IDP2", Foreign { name: "a Quake II model (MD2)", hint: "let its name end with .md2" }),
-    (b"IDP3", Foreign { name: "a Quake III model (MD3)", hint: MESH }),
+    (b"IDP3", Foreign { name: "a Quake III model (MD3)", hint: "let its name end with .md3" }),
+    (b"IDP4", Foreign { name: "a Quake III skeletal model (MD4)", hint: MD4 }),
+    (b"RDM5", Foreign { name: "a Quake III skeletal model (MDR)", hint: MD4 }),
     (b"IDPO", Foreign { name: "a Quake model (MDL)", hint: MESH }),
-    (b"MD5Version", Foreign { name: "a Doom 3 model (MD5)", hint: MESH }),
+    (
+        b"MD5Version",
+        Foreign {
+            name: "a Doom 3 model (MD5)",
+            hint: "let its name end with .md5mesh, or .md5anim for a motion",
+        },
+    ),
     (b"ISO-10303-21", Foreign { name: "a STEP file", hint: SOLID }),
     (b"DBRep_DrawableShape", Foreign { name: "an OpenCascade shape (BREP)", hint: SOLID }),
     (b"PXR-USDC", Foreign { name: "a binary USD file", hint: MESH }),

@@ -10,27 +10,8 @@
 use glam::{DVec2, DVec3};
 use thiserror::Error;
 
+use super::keyframes::{Frame, Keyframes, text};
 use crate::geometry::mesh::PolygonMesh;
-
-/// A file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Md2 {
-    /// Faces over the points of the first frame.
-    pub mesh: PolygonMesh,
-    /// The frames, at least one, each with as many points.
-    pub frames: Vec<Frame>,
-    /// Paths of the pictures that the file names.
-    pub skins: Vec<String>,
-}
-
-/// A frame.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Frame {
-    /// Its name in the file.
-    pub name: String,
-    /// Its points, in the file's unit and axes.
-    pub points: Vec<DVec3>,
-}
 
 /// Why a file is no model.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -107,41 +88,11 @@ const HEADER: usize = 68;
 /// Bytes of a frame before its points: scale, offset and name.
 const FRAME_HEAD: i64 = 40;
 
-/// The names and lengths of the sequences of a player in Quake II, in their order.
-///
-/// Source: id Software, Quake II source code, 2001, `m_player.h`.
-pub const STANDARD: [(&str, usize); 21] = [
-    ("stand", 40),
-    ("run", 6),
-    ("attack", 8),
-    ("pain-a", 4),
-    ("pain-b", 4),
-    ("pain-c", 4),
-    ("jump", 6),
-    ("flip", 12),
-    ("salute", 11),
-    ("taunt", 17),
-    ("wave", 11),
-    ("point", 12),
-    ("crouch-stand", 19),
-    ("crouch-walk", 6),
-    ("crouch-attack", 9),
-    ("crouch-pain", 4),
-    ("crouch-death", 5),
-    ("death-fall-back", 6),
-    ("death-fall-forward", 6),
-    ("death-fall-back-slow", 8),
-    ("boom", 1),
-];
-
-/// Frames of a player but for the last sequence, which few models have.
-pub const STANDARD_FRAMES: usize = 198;
-
 /// Reads a file. O(its length).
 ///
 /// # Errors
 /// See [`Md2Fault`].
-pub fn read(bytes: &[u8]) -> Result<Md2, Md2Fault> {
+pub fn read(bytes: &[u8]) -> Result<Keyframes, Md2Fault> {
     if !bytes.starts_with(b"IDP2") {
         let short = bytes.len() < HEADER && b"IDP2".starts_with(&bytes[..bytes.len().min(4)]);
         return Err(if short { Md2Fault::TooShort { length: bytes.len() } } else { Md2Fault::NotMd2 });
@@ -154,7 +105,7 @@ pub fn read(bytes: &[u8]) -> Result<Md2, Md2Fault> {
     let frames = header.frames(bytes)?;
     let mesh = header.mesh(bytes, &frames[0].points)?;
     let names = header.rows(bytes, header.skin_offset, header.skins, 64);
-    Ok(Md2 { mesh, frames, skins: names.map(text).collect() })
+    Ok(Keyframes { mesh, frames, pictures: names.map(text).collect(), ..Keyframes::default() })
 }
 
 /// What the header says.
@@ -254,7 +205,7 @@ impl Header {
             let place =
                 |[x, y, z, _]: &[u8; 4]| scale * DVec3::from_array([*x, *y, *z].map(f64::from)) + offset;
             let points = words[10..10 + points].iter().map(place).collect();
-            Ok(Frame { name: text(&row[24..40]), points })
+            Ok(Frame { name: text(&row[24..40]), points, normals: Vec::new() })
         };
         (1..).zip(rows).map(frame).collect()
     }
@@ -296,64 +247,6 @@ impl Header {
             }
         }
         Ok(found)
-    }
-}
-
-/// Text up to its first zero; what is no ASCII letter, digit or sign is a question mark.
-fn text(bytes: &[u8]) -> String {
-    let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
-    bytes[..end].iter().map(|byte| if byte.is_ascii_graphic() { char::from(*byte) } else { '?' }).collect()
-}
-
-/// Frames of one sequence.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Sequence {
-    /// Its name.
-    pub name: String,
-    /// Numbers of its frames, from 0.
-    pub frames: std::ops::Range<usize>,
-}
-
-impl Md2 {
-    /// Frames that follow each other and have one name but for a number at its end. Of numbers of three digits the first
-    /// belongs to the name: `death213` is the thirteenth frame of `death2`.
-    #[must_use]
-    pub fn sequences(&self) -> Vec<Sequence> {
-        let mut all: Vec<Sequence> = Vec::new();
-        for (number, frame) in self.frames.iter().enumerate() {
-            let name = sequence_name(&frame.name);
-            match all.last_mut().filter(|last| last.name == name) {
-                Some(last) => last.frames.end = number + 1,
-                None => all.push(Sequence { name, frames: number..number + 1 }),
-            }
-        }
-        all
-    }
-
-    /// The sequences of a player in Quake II, by their places; none where there are other numbers of frames.
-    #[must_use]
-    pub fn standard_sequences(&self) -> Option<Vec<Sequence>> {
-        let count = match self.frames.len() {
-            STANDARD_FRAMES => STANDARD.len() - 1,
-            length if length == STANDARD_FRAMES + 1 => STANDARD.len(),
-            _ => return None,
-        };
-        let mut start = 0;
-        let sequence = |(name, frames): &(&str, usize)| {
-            let own = start..start + frames;
-            start = own.end;
-            Sequence { name: (*name).to_owned(), frames: own }
-        };
-        Some(STANDARD[..count].iter().map(sequence).collect())
-    }
-}
-
-fn sequence_name(frame: &str) -> String {
-    let name = frame.trim_end_matches(|c: char| c.is_ascii_digit());
-    let digits = &frame[name.len()..];
-    match digits.parse::<u32>() {
-        Ok(number) if digits.len() >= 3 && number >= 100 => format!("{name}{}", number / 100),
-        _ => name.to_owned(),
     }
 }
 

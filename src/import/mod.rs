@@ -5,11 +5,15 @@
 //! themselves: other files come through a door that the caller passes in.
 
 pub mod bvh;
+mod bytes;
 mod error;
 mod foreign;
 pub mod heights;
 pub mod image;
+pub mod keyframes;
 pub mod md2;
+pub mod md3;
+pub mod md5;
 pub mod obj;
 pub mod ply;
 pub mod stl;

@@ -81,6 +81,8 @@ pub struct Node {
     pub parent: Option<usize>,
     /// The socket that carries it, in place of a parent.
     pub socket: Option<SocketHandle>,
+    /// Whether it is itself a place to attach things to.
+    pub is_socket: bool,
     /// Applied last.
     pub translation: DVec3,
     /// Applied second.

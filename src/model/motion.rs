@@ -69,6 +69,8 @@ pub enum WeightRule {
     Heat,
     /// For each of the skin's joints a formula of x, y and z in the document's unit and axes.
     Explicit(Vec<Formula>),
+    /// For each point of the shape's polygons the joints that carry it, by their places among the skin's, and their weights.
+    Given(Vec<Vec<(usize, f64)>>),
 }
 
 /// A state of a shape.

@@ -141,6 +141,12 @@ fn influences(model: &Model, index: usize, mesh: &Mesh) -> Result<Vec<Influences
             envelope_weights(&mesh.points, &joints)
         }
         WeightRule::Heat => heat(model, (index, &skin.joints), mesh, &joints)?,
+        WeightRule::Given(given) => {
+            let mut own = given.iter();
+            weights_of(&mesh.points, joints.len(), |_, weights| {
+                own.next().into_iter().flatten().for_each(|(joint, share)| weights[*joint] = *share);
+            })
+        }
         WeightRule::Explicit(formulas) => {
             let back = model.frame.map().inverse();
             weights_of(&mesh.points, formulas.len(), |point, weights| {

@@ -182,7 +182,7 @@ fn nodes(model: &Model, shown: &[Shown]) -> Vec<Node> {
             name: node.name.clone(),
             mesh: place(node),
             skin: None,
-            socket: false,
+            socket: node.is_socket,
             parent: node.parent,
             translation: axes * node.translation * model.frame.unit,
             rotation: (turn * node.rotation * turn.conjugate()).normalize(),

@@ -11,6 +11,11 @@ use crate::language::cases::{Case, check_folder};
 /// A model with frames.
 const CATERPILLAR: &[u8] = include_bytes!("../../specs/inputs/caterpillar.md2");
 
+/// Models of frames with tags, and of joints with a motion.
+const BEETLE: &[u8] = include_bytes!("../../specs/inputs/beetle.md3");
+const LAMP: &str = include_str!("../../specs/inputs/lamp.md5mesh");
+const BOW: &str = include_str!("../../specs/inputs/lamp-bow.md5anim");
+
 /// The case's own files, and broken ones that a text cannot hold.
 fn with_broken(files: MemoryFiles) -> MemoryFiles {
     let png: &[u8] = include_bytes!("../../specs/inputs/label.png");
@@ -30,6 +35,15 @@ fn with_broken(files: MemoryFiles) -> MemoryFiles {
         .with("caterpillar.md2", CATERPILLAR)
         .with("half.md2", &CATERPILLAR[..CATERPILLAR.len() / 2])
         .with("bird.md2", include_str!("../../specs/inputs/bird.obj"))
+        .with("beetle.md3", BEETLE)
+        .with("half.md3", &BEETLE[..BEETLE.len() / 2])
+        .with("bird.md3", include_str!("../../specs/inputs/bird.obj"))
+        .with("old.md4", b"IDP4\x01\0\0\0".as_slice())
+        .with("lamp.md5mesh", LAMP)
+        .with("half.md5mesh", &LAMP[..LAMP.len() / 2])
+        .with("bird.md5mesh", include_str!("../../specs/inputs/bird.obj"))
+        .with("lamp-bow.md5anim", BOW)
+        .with("half.md5anim", &BOW[..BOW.len() / 2])
         .with("liar.stl", liar)
         .with("empty.obj", "")
         .with("scene.blend", b"BLENDER-v293".as_slice())

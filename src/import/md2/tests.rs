@@ -2,7 +2,8 @@ use std::fmt::Write as _;
 
 use glam::DVec3;
 
-use super::{Md2Fault, STANDARD, STANDARD_FRAMES, read};
+use super::super::keyframes::{STANDARD, STANDARD_FRAMES};
+use super::{Md2Fault, read};
 
 /// A tetrahedron in some frames, written field by field.
 fn file(names: &[&str]) -> Vec<u8> {
@@ -44,7 +45,7 @@ fn file(names: &[&str]) -> Vec<u8> {
 fn points_faces_and_pictures_are_read() {
     let bytes = file(&["stand01", "stand02"]);
     let found = read(&bytes).expect("a model");
-    assert_eq!(found.skins, ["players/knight.pcx"]);
+    assert_eq!(found.pictures, ["players/knight.pcx"]);
     assert_eq!(found.frames[0].points[1], DVec3::new(2.0, -1.0, 0.0));
     assert_eq!(found.frames[1].points[3], DVec3::new(1.0, -1.0, 5.0));
     assert_eq!(found.mesh.points, found.frames[0].points);

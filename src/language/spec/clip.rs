@@ -54,7 +54,7 @@ table! {
 
 table! {
     /// The motion of a BVH file, for a skeleton whose joints have the names of the file's in kebab-case and stand at rest as
-    /// they do there.
+    /// they do there; or that of an MD5 motion (`.md5anim`), for a skeleton from an MD5 mesh of the same joints.
     "motion import" pub MotionImport {
         /// The file; the path is relative to this document and stays inside the project.
         file: Sp<FilePath>;

@@ -25,30 +25,31 @@ pub struct FilePath {
 }
 
 table! {
-    /// A model from a file: Wavefront OBJ, STL, PLY, or a Quake II model (MD2), whose frames become morphs of the shape where a node
-    /// shows it, with a name each, and whose sequences become clips.
+    /// A model from a file: Wavefront OBJ, STL, PLY, a Doom 3 mesh (MD5), or a Quake model (MD2, MD3), whose frames become morphs of
+    /// the shape where a node shows it, with a name each, and whose sequences become clips. The tags of an MD3 file are nodes with
+    /// their names in kebab-case, which move with the frames and carry others as sockets do.
     "import" pub Import {
         /// The file; the path is relative to this document and stays inside the project.
         file: Sp<FilePath>;
-        /// Only this group or object of the file.
+        /// Only this group or object of the file: of MD3 a surface, of MD5 the meshes of a material.
         group: Option<Sp<String>>;
         /// Factor from the file's unit to the document's: 0.001 for millimetres in a document in metres.
         scale: Sp<f64> = 1.0 => Check::above(0.0);
-        /// Which axis of the file points up: `"y"` when it is not written, for STL and MD2 `"z"`.
+        /// Which axis of the file points up: `"y"` when it is not written, for STL, MD2, MD3 and MD5 `"z"`.
         up: Option<Sp<Up>>;
         /// Points nearer than this, in the file's unit, are made one.
         weld: Option<Sp<f64>> => Check::at_least(0.0);
         /// For each material of the file the name of one of this document.
         materials: IndexMap<String, Sp<MaterialName>> = IndexMap::new();
-        /// The frame of an MD2 file that is the shape, by its name in the file; the first when it is not written.
+        /// The frame of an MD2 or MD3 file that is the shape, by its name in the file; the first when it is not written.
         frame: Option<Sp<String>>;
-        /// Which frames of an MD2 file are read.
+        /// Which frames of an MD2 or MD3 file are read.
         frames: Sp<Frames> = Frames::All;
-        /// How the sequences of an MD2 file are told.
+        /// How the sequences of an MD2 or MD3 file are told.
         sequences: Sp<Sequences> = Sequences::Named;
-        /// Frames of an MD2 file that are played in a second.
+        /// Frames of an MD2 or MD3 file that are played in a second.
         frame_rate: Sp<f64> = 10.0 => Check::within(1.0, 1000.0);
-        /// The sequences of an MD2 file that are played again and again: from their last frame they go on to the first.
+        /// The sequences of an MD2 or MD3 file that are played again and again: from their last frame they go on to the first.
         r#loop: Vec<Sp<String>> = Vec::new();
     }
 }

@@ -36,15 +36,16 @@ table! {
 }
 
 table! {
-    /// The joints of a BVH file. Their names are written in kebab-case: `LeftUpLeg` is `left-up-leg`. Bones run to end sites or
-    /// to the middle of the joints they carry.
+    /// The joints of a BVH file or of an MD5 mesh. Their names are written in kebab-case: `LeftUpLeg` is `left-up-leg`. Bones run
+    /// to end sites or to the middle of the joints they carry. Where several joints of a mesh have no parent, a joint `root` at
+    /// the origin carries them.
     "skeleton import" pub SkeletonImport {
         /// The file; the path is relative to this document and stays inside the project.
         file: Sp<FilePath>;
         /// What one unit of the file is in the document's unit.
         scale: Sp<f64> = 1.0 => Check::above(0.0);
-        /// The axis that points up in the file.
-        up: Sp<Up> = Up::Y;
+        /// The axis that points up in the file: `"y"` when it is not written, for MD5 `"z"`.
+        up: Option<Sp<Up>>;
     }
 }
 

@@ -41,6 +41,8 @@ choices! {
         Heat = "heat";
         /// By the formulas of `weight`.
         Explicit = "explicit";
+        /// Those of the file of the shape, which is an MD5 mesh. Its joints are found by their names in kebab-case.
+        Imported = "imported";
     }
 }
 
