@@ -208,7 +208,7 @@ impl Builder<'_> {
             Recipe::Patches { patches, .. } if patches.surfaces.len() == 1 => {
                 patches.surfaces.into_iter().next().map(BaseSurface::Any)
             }
-            Recipe::Trimmed(trimmed) => Some(BaseSurface::Any(trimmed.surface)),
+            Recipe::Trimmed(trimmed) => Some(BaseSurface::Any(trimmed.surface().clone())),
             Recipe::Revolution(turned) => Some(BaseSurface::Turned(RevolvedSurface {
                 profile: turned.profile,
                 start: turned.start,

@@ -31,29 +31,12 @@ pub use store::{Stats, Verified};
 #[derive(Clone, Debug)]
 pub struct Key(Hash);
 
-impl Key {
-    /// The key of this compiler and the parts in their order.
-    #[must_use]
-    pub fn new<'a>(parts: impl IntoIterator<Item = &'a str>) -> Self {
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(compiler().as_bytes());
-        for part in parts {
-            // Lengths keep `ab` + `c` apart from `a` + `bc`.
-            hasher.update(&(part.len() as u64).to_le_bytes());
-            hasher.update(part.as_bytes());
-        }
-        Self(hasher.finalize())
-    }
-}
-
-/// The hash of the program that runs: another build is another compiler.
-fn compiler() -> Hash {
-    static COMPILER: std::sync::OnceLock<Hash> = std::sync::OnceLock::new();
-    *COMPILER.get_or_init(|| {
-        let own = std::env::current_exe().and_then(std::fs::read);
-        let bytes = own.unwrap_or_else(|_| env!("CARGO_PKG_VERSION").as_bytes().to_vec());
-        blake3::hash(&bytes)
-    })
+/// The hash of the program that runs: another build is another compiler. One that was not touched is not read again.
+fn compiler(stamps: &Stamps) -> Hash {
+    let own = std::env::current_exe().ok();
+    let hash = |path: &Path| Some(blake3::hash(&std::fs::read(path).ok()?));
+    let known = own.and_then(|path| stamps.hash(&path, || hash(&path)));
+    known.unwrap_or_else(|| blake3::hash(env!("CARGO_PKG_VERSION").as_bytes()))
 }
 
 /// A folder of what was baked. One for all threads.
@@ -61,6 +44,7 @@ fn compiler() -> Hash {
 pub struct Cache {
     store: Store,
     stamps: Stamps,
+    compiler: Hash,
     /// The first trouble with writing; the rest would be the same.
     trouble: Mutex<Option<String>>,
 }
@@ -82,7 +66,21 @@ impl Cache {
     pub fn open(folder: &Path, limit: u64) -> std::io::Result<Self> {
         let store = Store::open(folder, limit)?;
         let stamps = Stamps::load(&store);
-        Ok(Self { store, stamps, trouble: Mutex::default() })
+        let compiler = compiler(&stamps);
+        Ok(Self { store, stamps, compiler, trouble: Mutex::default() })
+    }
+
+    /// The key of this compiler and the parts in their order.
+    #[must_use]
+    pub fn key<'a>(&self, parts: impl IntoIterator<Item = &'a str>) -> Key {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(self.compiler.as_bytes());
+        for part in parts {
+            // Lengths keep `ab` + `c` apart from `a` + `bc`.
+            hasher.update(&(part.len() as u64).to_le_bytes());
+            hasher.update(part.as_bytes());
+        }
+        Key(hasher.finalize())
     }
 
     /// What came of a document when all its inputs were as they are now.

@@ -76,8 +76,10 @@ struct Worker<'a> {
 impl Worker<'_> {
     /// Bakes a document and its variants, or takes what was baked before.
     fn document(&self, (index, task): (usize, &Task), messages: &mut Vec<Message>) -> Outcome {
-        let key = self.key(task);
-        if let Some(outcome) = self.known((index, task), &key, messages) {
+        let cached = self.cache.as_ref().map(|cache| (cache, self.key(cache, task)));
+        if let Some((cache, key)) = &cached
+            && let Some(outcome) = self.known((index, task), (cache, key), messages)
+        {
             return outcome;
         }
         let (files, document) = match loaded(task, messages) {
@@ -143,7 +145,7 @@ impl Worker<'_> {
             let inputs = read.iter().filter(|record| record.found).map(|record| record.path.as_str());
             self.depend((index, task), &made.record, inputs);
         }
-        if let (Some(cache), Outcome::Good) = (&self.cache, outcome) {
+        if let (Some((cache, key)), Outcome::Good) = (cached, outcome) {
             let bytes: Vec<&[u8]> = made.bytes.iter().map(Vec::as_slice).collect();
             cache.keep(&key, &read, &made.record, &bytes);
         }
@@ -151,12 +153,12 @@ impl Worker<'_> {
     }
 
     /// Everything but files that outputs depend on.
-    fn key(&self, task: &Task) -> Key {
+    fn key(&self, cache: &Cache, task: &Task) -> Key {
         let bake = self.bake;
         let flags = [bake.no_report, bake.measure].map(|flag| if flag { "yes" } else { "no" });
         let profiles = bake.profile.iter().map(|profile| profile.name());
         let sets = bake.documents.set.iter().flat_map(|(name, value)| [name.as_str(), value.as_str()]);
-        Key::new(
+        cache.key(
             [task.path.as_str(), task.name()]
                 .into_iter()
                 .chain(flags)
@@ -170,10 +172,9 @@ impl Worker<'_> {
     fn known(
         &self,
         (index, task): (usize, &Task),
-        key: &Key,
+        (cache, key): (&Cache, &Key),
         messages: &mut Vec<Message>,
     ) -> Option<Outcome> {
-        let cache = self.cache.as_ref()?;
         let Hit { record, inputs } = cache.find(key, &task.root)?;
         let mut missing = Vec::new();
         for asset in &record.assets {

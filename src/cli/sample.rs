@@ -110,7 +110,7 @@ fn of_shape(name: &str, model: &Model, sample: &Sample) -> Result<Value, String>
         return describe_surfaces(name, &patches.surfaces, &|u, v| surface_places(sample, u, v));
     }
     if let Recipe::Trimmed(shape) = &shape.recipe {
-        let whole = core::slice::from_ref(&shape.surface);
+        let whole = core::slice::from_ref(shape.surface());
         return describe_surfaces(name, whole, &|u, v| surface_places(sample, u, v));
     }
     let (surface, swept) = surface(&shape.recipe)

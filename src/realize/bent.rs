@@ -198,7 +198,7 @@ pub(super) fn periods(model: &Model, handle: ShapeHandle, all: &mut Vec<(f64, f6
             all.extend(sweep.outlines.iter().map(|curves| (of(curves), way)));
             all.extend([(NEVER, NEVER); 2]);
         }
-        Recipe::Trimmed(shape) => all.push(nearest::periods(&shape.surface)),
+        Recipe::Trimmed(shape) => all.push(nearest::periods(shape.surface())),
         Recipe::Wire(curves) => all.extend(curves.iter().map(|curve| (round(curve), NEVER))),
         Recipe::Patches { patches, .. } => {
             all.extend(patches.surfaces.iter().map(nearest::periods));

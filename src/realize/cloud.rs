@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::extents::extent;
 use crate::geometry::curve::{AnyCurve, Curve as _, Side};
-use crate::geometry::number::{Bounds, sin_cos_degrees};
+use crate::geometry::number::sin_cos_degrees;
 use crate::geometry::surface::{AnySurface, Surface, SweptWall};
 use crate::geometry::tessellate::{Density, Revolution, RoundedBox, Sweep, TrimmedSurface, discretize};
 use crate::model::Recipe;
@@ -86,10 +86,9 @@ fn lattice(surface: &AnySurface) -> Vec<DVec3> {
 
 /// Points over the rectangle of parameters around the outlines.
 fn trimmed(shape: &TrimmedSurface) -> Vec<DVec3> {
-    let outlines = shape.outlines.iter().flat_map(points);
-    let around = Bounds::of_points(outlines);
-    let (u, v) = (even(around.min.x, Vec::new(), around.max.x), even(around.min.y, Vec::new(), around.max.y));
-    v.iter().flat_map(|v| u.iter().map(|u| shape.surface.evaluate(*u, *v).point)).collect()
+    let (low, high) = shape.range();
+    let (u, v) = (even(low.x, Vec::new(), high.x), even(low.y, Vec::new(), high.y));
+    v.iter().flat_map(|v| u.iter().map(|u| shape.point(DVec2::new(*u, *v)))).collect()
 }
 
 fn swept(sweep: &Sweep) -> Vec<DVec3> {

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::Window;
 use crate::geometry::curve::{Domain, Side};
 use crate::geometry::number::Bounds;
-use crate::geometry::surface::{AnySurface, Rim, Surface, SurfaceJet};
+use crate::geometry::surface::{AnySurface, Rim, Surface, SurfaceJet, closed_directions};
 
 /// A surface with what the search for its nearest points needs to know of it.
 #[derive(Clone, Debug)]
@@ -16,7 +16,7 @@ pub(super) struct Field {
     /// Where tangents jump, with both ends of the domain.
     stops: (Vec<f64>, Vec<f64>),
     /// Whether opposite rims of u, and of v, are one line.
-    closed: (bool, bool),
+    closed: [bool; 2],
     /// Points along each side, evenly in its parameter, and a box around all of them.
     rims: [[DVec3; RIM_POINTS]; 4],
     reach: Bounds,
@@ -69,8 +69,8 @@ impl Field {
         };
         let stops = (with_ends(surface.joints_u(), u), with_ends(surface.joints_v(), v));
         let surface = Box::new(surface.clone());
-        let mut field = Self { surface, u, v, stops, closed: (false, false), rims, reach: Bounds::EMPTY };
-        field.closed = field.find_closed();
+        let closed = closed_directions(&surface);
+        let mut field = Self { surface, u, v, stops, closed, rims, reach: Bounds::EMPTY };
         field.rims = Rim::ALL
             .map(|rim| std::array::from_fn(|k| field.rim_point(rim, k as f64 / (RIM_POINTS - 1) as f64)));
         field.reach = Bounds::of_points(field.rims.iter().flatten().copied());
@@ -94,7 +94,7 @@ impl Field {
 
     /// Whether u, and v, come round.
     pub(super) fn closed(&self) -> [bool; 2] {
-        [self.closed.0, self.closed.1]
+        self.closed
     }
 
     /// Whether parameters are those of a side.
@@ -142,8 +142,8 @@ impl Field {
     /// Distance from a point to the nearest point found on the surface around the parameters of a triangle. Never
     /// less than the distance to the whole surface.
     pub(super) fn distance(&self, point: DVec3, window: &Window) -> f64 {
-        let corners_u = unwrapped(window.u, self.u, self.closed.0);
-        let corners_v = unwrapped(window.v, self.v, self.closed.1);
+        let corners_u = unwrapped(window.u, self.u, self.closed[0]);
+        let corners_v = unwrapped(window.v, self.v, self.closed[1]);
         let middle = |values: [f64; 3]| values.iter().sum::<f64>() / 3.0;
         // The middle leads there but for triangles across an edge of the surface.
         let starts = [
@@ -178,23 +178,6 @@ impl Field {
         Piece { u: around(&self.stops.0, u), v: around(&self.stops.1, v) }
     }
 
-    fn find_closed(&self) -> (bool, bool) {
-        const PLACES: [f64; 3] = [0.2, 0.5, 0.9];
-        let same = |a: DVec3, b: DVec3, size: f64| a.distance(b) <= 1e-9 * size;
-        let corner = self.jet(self.u.start, self.v.start).point;
-        let size = PLACES.map(|part| self.jet(self.u.at(part), self.v.at(part)).point.distance(corner));
-        let size = size.into_iter().fold(0.0, f64::max);
-        let around_u = PLACES.iter().all(|part| {
-            let v = self.v.at(*part);
-            same(self.jet(self.u.start, v).point, self.jet(self.u.end, v).point, size)
-        });
-        let around_v = PLACES.iter().all(|part| {
-            let u = self.u.at(*part);
-            same(self.jet(u, self.v.start).point, self.jet(u, self.v.end).point, size)
-        });
-        (around_u, around_v)
-    }
-
     /// Starts at the other side of a seam, for places near it.
     fn across_seams(&self, u: f64, v: f64) -> Vec<(f64, f64)> {
         /// Share of the domain that is near.
@@ -210,10 +193,10 @@ impl Field {
                 None
             }
         };
-        if let Some(u) = across(u, self.u).filter(|_| self.closed.0) {
+        if let Some(u) = across(u, self.u).filter(|_| self.closed[0]) {
             starts.push((u, v));
         }
-        if let Some(v) = across(v, self.v).filter(|_| self.closed.1) {
+        if let Some(v) = across(v, self.v).filter(|_| self.closed[1]) {
             starts.push((u, v));
         }
         starts
@@ -260,5 +243,5 @@ impl Field {
 pub(super) fn periods(surface: &AnySurface) -> (f64, f64) {
     let field = Field::new(surface);
     let round = |closed: bool, domain: Domain| if closed { domain.span() } else { f64::INFINITY };
-    (round(field.closed.0, field.u), round(field.closed.1, field.v))
+    (round(field.closed[0], field.u), round(field.closed[1], field.v))
 }

@@ -292,7 +292,7 @@ fn kinds(recipe: &Recipe, bends: bool) -> Vec<Kind> {
             let fields = patches.surfaces.iter().map(|surface| Kind::Patch(Box::new(Field::new(surface))));
             fields.chain(Flat::of_caps(patches).into_iter().map(flat)).collect()
         }
-        Recipe::Trimmed(shape) => vec![Kind::Patch(Box::new(Field::new(&shape.surface)))],
+        Recipe::Trimmed(shape) => vec![Kind::Patch(Box::new(Field::new(shape.surface())))],
         Recipe::Quadric(shape) => {
             let faces = if bends { Flat::of_clip(shape) } else { Flat::Exact };
             let flat = |source| {

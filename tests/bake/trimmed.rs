@@ -52,3 +52,26 @@ fn the_panel_has_its_openings() {
     let facts = &baked.report().shapes["hood"].facts;
     assert_eq!((facts.components, facts.boundary_loops), (1, 4), "{facts:?}");
 }
+
+/// The asset of the gallery: windows over the edges and over the seam of its shell, and a band of glass all around.
+#[test]
+fn the_lantern_has_its_windows() {
+    let baked = bake(include_str!("../../specs/trimmed/lantern.toml"));
+    let shell = &baked.report().shapes["shell"].facts;
+    assert_eq!((shell.components, shell.boundary_loops, shell.degenerate_triangles), (1, 10, 0), "{shell:?}");
+    let glass = &baked.report().shapes["glass"].facts;
+    assert_eq!((glass.components, glass.boundary_loops, glass.degenerate_triangles), (1, 2, 0), "{glass:?}");
+}
+
+/// A roof of two flat halves: a disk over its ridge has the area of a disk, leaned.
+#[test]
+fn outlines_run_over_edges() {
+    let baked = bake(
+        "tolerance = 1e-4\n[shape.a.trimmed]\nof = { patches = { degree = 1, control = [\
+         [[0, 0, 0], [1, 1, 0], [2, 0, 0]], [[0, 0, 2], [1, 1, 2], [2, 0, 2]]] } }\n\
+         profile = { ellipse = { radii = [0.8, 0.4], center = [1, 0.5] } }",
+    );
+    let facts = &baked.only().facts;
+    assert_near(facts.area, PI * 0.8 * 0.8 * 2.0_f64.sqrt(), 2e-3);
+    assert_eq!((facts.components, facts.boundary_loops), (1, 1), "{facts:?}");
+}

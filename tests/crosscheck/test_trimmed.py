@@ -80,3 +80,33 @@ def test_points_lie_on_the_surface_inside_of_the_line(kiln: Kiln) -> None:
     border = np.unique(ends[counts == 1])
     assert np.abs(radii[border] - 0.3).max() <= 1e-6
     assert set(np.flatnonzero(radii > 0.3 - 1e-6)) == set(border)
+
+
+# A cylinder about the z axis; u comes round after 1.
+TUBE = """tolerance = 1e-3
+[shape.skin.loft]
+caps = false
+profiles = [
+  {{ curve = {{ circle = {{ radius = 1 }} }} }},
+  {{ curve = {{ circle = {{ radius = 1 }} }}, at = [0, 0, 2] }},
+]
+[shape.a.trimmed]
+of = "skin"
+{trim}
+"""
+
+
+def test_lines_run_over_the_seam(kiln: Kiln) -> None:
+    """A cylinder unrolled is a strip 2 pi wide and 2 high: ellipses in its parameters have the areas of the plane."""
+    ellipse = np.pi * (0.1 * 2 * np.pi) * (0.3 * 2)
+    for center in (0.0, 0.37, 1.0, -0.03, 2.98):
+        hole = f"{{ ellipse = {{ radii = [0.1, 0.3], center = [{center}, 0.5] }} }}"
+        rest = kiln.bake(TUBE.format(trim=f"holes = [{hole}]")).shape("a")
+        lid = kiln.bake(TUBE.format(trim=f"profile = {hole}")).shape("a")
+        assert (rest["components"], rest["boundary-loops"], lid["boundary-loops"]) == (1, 3, 1)
+        assert abs(lid["area"] / ellipse - 1) <= 5e-3
+        assert abs((rest["area"] + lid["area"]) / (4 * np.pi) - 1) <= 5e-3
+        points, _ = kiln.bake(TUBE.format(trim=f"profile = {hole}")).mesh("a")
+        turn = (np.arctan2(points[:, 1], points[:, 0]) / (2 * np.pi) - center + 0.5) % 1 - 0.5
+        inside = (turn / 0.1) ** 2 + ((points[:, 2] / 2 - 0.5) / 0.3) ** 2
+        assert inside.max() <= 1 + 1e-5

@@ -5,6 +5,7 @@
 //! surface does not cross itself.
 
 mod any;
+mod closed;
 pub mod coons;
 mod deformation;
 mod deformed_path;
@@ -28,6 +29,7 @@ mod translational;
 pub mod triangle;
 
 pub use any::AnySurface;
+pub use closed::closed_directions;
 pub use deformation::{AxialDeformation, AxialKind, Deformation, Warped};
 pub use deformed_path::{Line, PathDeformation};
 pub use extruded::ExtrudedSurface;

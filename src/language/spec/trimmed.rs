@@ -10,10 +10,11 @@ use crate::language::spec::spanned::Sp;
 
 table! {
     /// A part of another surface, inside closed lines that are drawn on its parameters: x counts along its u, y along its
-    /// v. `kiln sample --shape NAME FILE` says from where to where u and v go. The lines follow the surface, however it bends.
+    /// v. `kiln sample --shape NAME FILE` says from where to where u and v go. The lines follow the surface, however it bends;
+    /// they may run over its edges, which stay sharp, and on a surface that closes over its seam, where u or v go on counting.
     "trimmed" pub Trimmed {
         /// The surface: one of patches, Bezier triangles, Hermite, B-spline, NURBS, Coons, Gordon, ruled, translational
-        /// or loft surfaces without edges inside and without caps.
+        /// or loft surfaces without caps.
         of: ShapeReference;
         /// The outline: the name of a closed curve, or a curve in place, in the parameters of the surface. Without it the
         /// whole surface is meant, and `holes` are cut out of it. A curve of several parts gives several faces: outlines, with

@@ -86,14 +86,17 @@ impl Block<'_> {
         self.sides[rim as usize]
     }
 
-    /// All of a surface, by itself: what is asked of its edges means nothing.
-    pub(in crate::geometry::tessellate) fn alone(surface: &AnySurface) -> Block<'_> {
-        let (u, v) = (surface.domain_u(), surface.domain_v());
+    /// A smooth rectangle of a surface, by itself: what is asked of its edges means nothing.
+    pub(in crate::geometry::tessellate) fn alone(
+        surface: &AnySurface,
+        u: (f64, f64),
+        v: (f64, f64),
+    ) -> Block<'_> {
         Block {
             surface,
             source: 0,
-            u: (u.start, u.end),
-            v: (v.start, v.end),
+            u,
+            v,
             sides: [EdgeUse { edge: 0, backward: false }; 4],
             flipped: false,
             outer: [true; 4],

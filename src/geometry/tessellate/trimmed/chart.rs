@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::geometry::surface::{AnySurface, Rim, Surface as _, SurfaceJet};
+use crate::geometry::surface::{Rim, SurfaceJet};
 use crate::geometry::tessellate::patch::{Block, Corner, Free, judge};
 use crate::geometry::tessellate::region::{Chart, Judgment};
 
@@ -11,7 +11,7 @@ pub(super) struct ParameterChart<'a> {
     block: Block<'a>,
     scale: DVec2,
     tolerance: f64,
-    /// Sides of the surface that are one point, in the order of [`Rim::ALL`].
+    /// Sides of the block that are one point, in the order of [`Rim::ALL`].
     poles: [bool; 4],
     /// What is nearer than this is one place.
     near: f64,
@@ -21,12 +21,11 @@ pub(super) struct ParameterChart<'a> {
 const PLACES: u32 = 8;
 
 impl<'a> ParameterChart<'a> {
-    /// For the part of a surface in a range of parameters.
-    pub(super) fn new(surface: &'a AnySurface, (low, high): (DVec2, DVec2), tolerance: f64) -> Self {
-        let block = Block::alone(surface);
+    /// For a range of the parameters of a smooth part of a surface.
+    pub(super) fn new(block: Block<'a>, (low, high): (DVec2, DVec2), tolerance: f64) -> Self {
         let mut lengths = DVec2::ZERO;
         let mut reach = 0.0_f64;
-        let first = surface.evaluate(low.x, low.y).point;
+        let first = block.jet(low.x, low.y).point;
         for (x, y) in (0..=PLACES).flat_map(|x| (0..=PLACES).map(move |y| (x, y))) {
             let place = low + (high - low) * DVec2::new(f64::from(x), f64::from(y)) / f64::from(PLACES);
             let jet = block.jet(place.x, place.y);
@@ -69,7 +68,7 @@ impl<'a> ParameterChart<'a> {
         DVec2::new(snapped(place.x, u), snapped(place.y, v))
     }
 
-    pub(super) fn domains(&self) -> ((f64, f64), (f64, f64)) {
+    fn domains(&self) -> ((f64, f64), (f64, f64)) {
         (self.block.u, self.block.v)
     }
 

@@ -84,8 +84,14 @@ fn border(mesh: &Mesh) -> usize {
     uses.values().filter(|ways| ways.len() == 1).count()
 }
 
+/// Edges, and points and triangles together: they differ by Euler's number.
+fn counts(mesh: &Mesh) -> (usize, usize) {
+    let edges = (3 * mesh.triangles.len() + border(mesh)) / 2;
+    (edges, mesh.points.len() + mesh.triangles.len())
+}
+
 fn made(surface: &AnySurface, outlines: Vec<AnyCurve>, tolerance: f64) -> Tessellation {
-    let shape = TrimmedSurface { surface: surface.clone(), outlines };
+    let shape = TrimmedSurface::new(surface.clone(), outlines);
     let made = trimmed(&shape, &detail(tolerance)).unwrap_or_else(|error| panic!("{error}"));
     assert!(made.deviation.bound <= tolerance, "{} of {tolerance}", made.deviation.bound);
     for (corners, [a, b, c]) in made.mesh.triangles.iter().zip(corners(&made.mesh)) {
@@ -163,18 +169,122 @@ fn a_hole_in_a_ball_leaves_the_rest() {
 #[test]
 fn lines_that_cross_are_refused() {
     let outlines = vec![circle(0.4, 0.5, 0.3), circle(0.6, 0.5, 0.3)];
-    let shape = TrimmedSurface { surface: plane(), outlines };
+    let shape = TrimmedSurface::new(plane(), outlines);
     assert_eq!(trimmed(&shape, &detail(1e-2)), Err(TessellateError::Tangled));
-    let shape = TrimmedSurface { surface: bowl(), outlines: vec![circle(0.0, 0.0, 0.9)] };
+    let shape = TrimmedSurface::new(bowl(), vec![circle(0.0, 0.0, 0.9)]);
     let few = Detail { triangle_limit: 50, ..detail(1e-5) };
     assert!(matches!(trimmed(&shape, &few), Err(TessellateError::TooMany { .. })));
 }
 
 #[test]
 fn a_fixed_grid_is_a_lattice() {
-    let shape = TrimmedSurface { surface: bowl(), outlines: vec![circle(0.0, 0.0, 0.9)] };
+    let shape = TrimmedSurface::new(bowl(), vec![circle(0.0, 0.0, 0.9)]);
     let grid = Detail { density: SurfaceDensity::Grid { u: 16, v: 10 }, ..detail(1.0) };
     let made = trimmed(&shape, &grid).expect("a grid");
     assert_eq!(border(&made.mesh), 16);
     assert!(made.mesh.triangles.len() > 60);
+}
+
+/// Two halves of a roof over the unit square that meet along u = 1/2 at a height of 1/2.
+fn roof() -> AnySurface {
+    let heights = [0.0, 0.5, 0.0];
+    let grid = Grid::from_fn(3, 2, |i, j| DVec3::new(i as f64 / 2.0, j as f64, heights[i]));
+    let breaks = vec![0.0, 0.5, 1.0];
+    let made = PolynomialSurface::bezier((1, 1), &grid.expect("six points"), breaks, vec![0.0, 1.0]);
+    AnySurface::Polynomial(Box::new(made.expect("two patches")))
+}
+
+/// A ring of radii 2 and 1/2: u around it in quarters, v around its tube in quarters.
+fn ring() -> AnySurface {
+    let half = 0.5_f64.sqrt();
+    let circle = [
+        ([2.5, 0.0], 1.0),
+        ([2.5, 0.5], half),
+        ([2.0, 0.5], 1.0),
+        ([1.5, 0.5], half),
+        ([1.5, 0.0], 1.0),
+        ([1.5, -0.5], half),
+        ([2.0, -0.5], 1.0),
+        ([2.5, -0.5], half),
+        ([2.5, 0.0], 1.0),
+    ];
+    let control = circle.map(|([x, y], w)| RationalSpline::homogeneous(DVec3::new(x, y, 0.0), w));
+    let breaks = [0.0, 0.25, 0.5, 0.75, 1.0];
+    let profile = BSpline::from_bezier(2, control.to_vec(), &breaks).expect("four pieces");
+    let spline = revolved(&profile, 0.0, 360.0);
+    AnySurface::Rational(Box::new(RationalSurface::spline(&spline).expect("positive weights")))
+}
+
+/// What lies over a seam is what lies elsewhere: a ring looks the same after each quarter turn and mirrored in its plane.
+#[test]
+fn outlines_run_over_seams() {
+    let ring = ring();
+    let (u, v) = (ring.domain_u(), ring.domain_v());
+    let radius = 0.1 * u.span().min(v.span());
+    let disk = |x: f64, y: f64| circle(u.start + x * u.span(), v.start + y * v.span(), radius);
+    let inside = made(&ring, vec![disk(0.25, 0.5)], 1e-2);
+    for x in [0.0, 0.5, 1.0, 3.0, -1.0] {
+        let over = made(&ring, vec![disk(x, 0.5)], 1e-2);
+        assert!((area(&over.mesh) - area(&inside.mesh)).abs() < 1e-2, "{x}");
+        // One part, and one border all around it.
+        let (edges, others) = counts(&over.mesh);
+        assert_eq!(others, edges + 1, "{x}");
+    }
+    let whole = polygon(&[[u.start, v.start], [u.end, v.start], [u.end, v.end], [u.start, v.end]]);
+    let all = area(&made(&ring, vec![whole.clone()], 1e-2).mesh);
+    // The area of Pappus; chords of a tube leave out about four times the tolerance over its radius.
+    assert!((all / (4.0 * PI * PI * 2.0 * 0.5) - 1.0).abs() < 0.08, "{all}");
+    for (x, y) in [(0.0, 0.5), (0.0, 0.0), (1.0, 1.0), (0.97, 0.02), (1.05, -0.03), (0.5, 1.0)] {
+        let rest = made(&ring, vec![whole.clone(), disk(x, y)], 1e-2);
+        let lid = made(&ring, vec![disk(x, y)], 1e-2);
+        assert!((area(&rest.mesh) + area(&lid.mesh) - all).abs() < 0.02 * all, "{x} {y}");
+        assert_eq!(border(&rest.mesh), border(&lid.mesh), "{x} {y}");
+        // A ring with a hole.
+        let (edges, others) = counts(&rest.mesh);
+        assert_eq!(others + 1, edges, "{x} {y}");
+    }
+    // A band around the tube and over the seam: two borders, and the area of Pappus.
+    let band = polygon(&[[-0.1, v.start], [0.1, v.start], [0.1, v.end], [-0.1, v.end]]);
+    let band = made(&ring, vec![band], 1e-2);
+    assert_eq!(band.mesh.points.len() * 2 - border(&band.mesh), band.mesh.triangles.len());
+    // A band all around that starts and ends anywhere has no border there.
+    let band = polygon(&[[-0.4, 0.2], [u.span() - 0.4, 0.2], [u.span() - 0.4, 0.7], [-0.4, 0.7]]);
+    let band = made(&ring, vec![band], 1e-2);
+    assert_eq!(band.mesh.points.len() * 2 - border(&band.mesh), band.mesh.triangles.len());
+}
+
+/// An ellipse over the ridge of a roof: both halves are flat, and the ridge is an edge.
+#[test]
+fn outlines_run_over_edges() {
+    let outlines = vec![circle(0.5, 0.5, 0.3)];
+    let made = made(&roof(), outlines, 1e-4);
+    // Each half leans by 45 degrees.
+    assert!((area(&made.mesh) - PI * 0.09 * 2.0_f64.sqrt()).abs() < 1e-3);
+    let ridge = made.mesh.points.iter().filter(|point| point.x == 0.5).count();
+    assert!(ridge >= 2);
+    for vertex in &made.mesh.vertices {
+        let point = made.mesh.points[vertex.point.subscript()];
+        assert!((point.z - (0.5 - (point.x - 0.5).abs())).abs() < 1e-12, "{point}");
+        assert!((vertex.normal.x.abs() - 0.5_f64.sqrt()).abs() < 1e-12);
+    }
+    // The border is one line; the ridge belongs to it with its two ends.
+    let (edges, others) = counts(&made.mesh);
+    assert_eq!(others, edges + 1);
+    // With a greater angle it is smooth.
+    let shape = TrimmedSurface::new(roof(), vec![circle(0.5, 0.5, 0.3)]);
+    let smooth = trimmed(&shape, &Detail { crease_angle: 100.0, ..detail(1e-3) }).expect("a cap");
+    let on_ridge =
+        |vertex: &&crate::geometry::mesh::Vertex| smooth.mesh.points[vertex.point.subscript()].x == 0.5;
+    assert!(smooth.mesh.vertices.iter().filter(on_ridge).all(|vertex| vertex.normal.x.abs() < 1e-12));
+}
+
+/// Outlines along an edge, and holes that touch one.
+#[test]
+fn outlines_run_along_edges() {
+    let half = polygon(&[[0.5, 0.1], [0.9, 0.1], [0.9, 0.9], [0.5, 0.9]]);
+    let one = made(&roof(), vec![half.clone()], 1e-3);
+    assert!((area(&one.mesh) - 0.32 * 2.0_f64.sqrt()).abs() < 1e-9);
+    let whole = polygon(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+    let rest = made(&roof(), vec![whole, half], 1e-3);
+    assert!((area(&rest.mesh) - 0.68 * 2.0_f64.sqrt()).abs() < 1e-9);
 }
