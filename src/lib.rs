@@ -22,11 +22,11 @@
 //! | `geometry::tessellate` | `geometry::number`, `geometry::formula`, `geometry::planar`, `geometry::curve`, `geometry::mesh`, `geometry::surface`, `geometry::field`, `geometry::map` |
 //! | `geometry::profile` | `geometry::number`, `geometry::planar`, `geometry::curve`, `geometry::tessellate` |
 //! | `motion` | `geometry::number`, `geometry::formula`, `geometry::curve`, `geometry::mesh`, `geometry::surface` |
-//! | `import` | `geometry::number`, `geometry::mesh` |
+//! | `packing` | |
+//! | `import` | `geometry::number`, `geometry::mesh`, `packing` |
 //! | `model` | `geometry`, `motion` |
 //! | `scene` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `model` |
 //! | `realize` | `geometry`, `motion`, `model`, `scene` |
-//! | `packing` | |
 //! | `optimize` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `packing`, `scene` |
 //! | `gltf` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `packing`, `scene` |
 //! | `report` | `geometry`, `motion`, `model`, `packing`, `scene`, `realize`, `gltf` |

@@ -5,6 +5,7 @@ mod bake;
 mod build_script;
 mod curves;
 mod import;
+mod import_gltf;
 mod language;
 mod laws;
 mod preview;

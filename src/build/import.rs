@@ -106,6 +106,7 @@ impl Builder<'_> {
         let options = ImportOptions {
             group: import.group.as_ref().map(|group| group.value.clone()),
             weld: import.weld.map(|weld| weld.value),
+            most: self.model.limits.triangles,
         };
         let files = self.files;
         let base = file.value.resolved.clone();
@@ -124,6 +125,7 @@ impl Builder<'_> {
                 }
                 imported
             }),
+            "glb" | "gltf" => import::gltf::read(&bytes, &options, &mut open),
             other => return self.unsupported(file, other, &bytes),
         };
         match read {
@@ -139,7 +141,9 @@ impl Builder<'_> {
         let line = error.line().map_or_else(String::new, |line| format!(":{line}"));
         let message = format!("{}{line}: {error}", file.value.written);
         let code = match error {
-            ImportError::Foreign(_) | ImportError::Binary { .. } => Code::UnsupportedFormat,
+            ImportError::Foreign(_)
+            | ImportError::Binary { .. }
+            | ImportError::Gltf(import::gltf::GltfFault::Extension(_)) => Code::UnsupportedFormat,
             ImportError::UnknownGroup { .. } | ImportError::EmptyGroup { .. } => Code::UnknownPart,
             _ => Code::ImportFailed,
         };
@@ -159,12 +163,12 @@ impl Builder<'_> {
                 } else {
                     format!("a .{extension} file")
                 },
-                "export it as Wavefront OBJ (.obj), STL (.stl), PLY (.ply) or a model of Quake or Doom (.md2, .md3, .md5mesh)",
+                "export it as glTF (.glb or .gltf), Wavefront OBJ (.obj), STL (.stl), PLY (.ply) or a model of Quake or Doom (.md2, .md3, .md5mesh)",
             ),
         };
         let message = format!("{} is {what}, which cannot be imported", file.value.written);
         let report = Diagnostic::error(Code::UnsupportedFormat, message)
-            .at(file.span, "not OBJ, STL, PLY, MD2, MD3 or MD5")
+            .at(file.span, "not glTF, OBJ, STL, PLY, MD2, MD3 or MD5")
             .help(hint);
         self.report(report);
         None
@@ -227,16 +231,16 @@ impl Builder<'_> {
         self.model.materials.push(Material {
             name: look.name.clone(),
             color: [red, green, blue, opacity],
-            metallic: 0.0,
-            roughness: 1.0,
+            metallic: look.metallic.unwrap_or(0.0),
+            roughness: look.roughness.unwrap_or(1.0),
             color_texture: None,
             metallic_roughness_texture: None,
             normal_texture: None,
             occlusion_texture: None,
-            emissive: [0.0; 3],
+            emissive: look.emissive.unwrap_or([0.0; 3]),
             emissive_texture: None,
             alpha: if opacity < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque },
-            double_sided: false,
+            double_sided: look.double_sided,
         });
         Some(MaterialHandle(mesh::index(self.model.materials.len()) - 1))
     }

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::Foreign;
+use super::gltf::GltfFault;
 use super::md2::Md2Fault;
 use super::md3::Md3Fault;
 use super::md5::Md5Fault;
@@ -157,6 +158,9 @@ pub enum ImportError {
     /// A Doom 3 model that is none.
     #[error(transparent)]
     Md5(#[from] Md5Fault),
+    /// A glTF file that is none.
+    #[error(transparent)]
+    Gltf(#[from] GltfFault),
     /// A PLY file that is none.
     #[error(transparent)]
     Ply(#[from] PlyFault),
@@ -197,6 +201,14 @@ impl ImportError {
             Self::UnknownGroup { known, .. } => format!("its groups are: {}", list_names(known)),
             Self::EmptyGroup { .. } => "leave `group` out, or name a group with faces".to_owned(),
             _ if self.is_foreign() => "let its name end as those of its format do".to_owned(),
+            Self::Gltf(GltfFault::Extension(_)) => {
+                "export it again without compression, or unpack it: `gltf-transform copy` writes plain files"
+                    .to_owned()
+            }
+            Self::Gltf(GltfFault::File(..)) => {
+                "files that it names stand beside it, inside the project".to_owned()
+            }
+            Self::Gltf(_) => "the file is damaged; the Khronos glTF validator tells more of it".to_owned(),
             Self::Truncated { .. } | Self::TooShort { .. } | Self::Md2(_) | Self::Md3(_) | Self::Ply(_) => {
                 "the file is cut off; export it again".to_owned()
             }

@@ -26,7 +26,7 @@ const MAGIC: [(&[u8], Foreign); 29] = [
     (b"\x1f\x8b", Foreign { name: "a compressed file (gzip)", hint: UNPACK }),
     (b"Kaydara FBX Binary", Foreign { name: "an FBX file", hint: OBJ }),
     (b"; FBX", Foreign { name: "an FBX file", hint: OBJ }),
-    (b"glTF", Foreign { name: "a binary glTF file", hint: MESH }),
+    (b"glTF", Foreign { name: "a binary glTF file", hint: "let its name end with .glb" }),
     (b"ply\n", Foreign { name: "a PLY file", hint: "let its name end with .ply" }),
     (b"ply\r", Foreign { name: "a PLY file", hint: "let its name end with .ply" }),
     (b"OFF", Foreign { name: "an OFF file", hint: MESH }),

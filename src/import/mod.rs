@@ -8,6 +8,7 @@ pub mod bvh;
 mod bytes;
 mod error;
 mod foreign;
+pub mod gltf;
 pub mod heights;
 pub mod image;
 pub mod keyframes;
@@ -29,8 +30,10 @@ pub struct ImportOptions {
     /// Only the faces of this group, object or solid.
     pub group: Option<String>,
     /// Join points that are within this distance, in the units of the file; 0 joins equal points. Without it OBJ points
-    /// stay as they are, and STL points are joined within rounding.
+    /// stay as they are, STL points are joined within rounding, and those of glTF where they are equal.
     pub weld: Option<f64>,
+    /// No more triangles than this are read from a glTF file, where one mesh may stand in many places; 0 is no limit.
+    pub most: u64,
 }
 
 /// What a file held, in its own units and axes.
@@ -55,7 +58,7 @@ pub struct Note {
     pub message: String,
 }
 
-/// What a material library says of a material.
+/// What a file or a material library says of a material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MaterialLook {
     /// Its name.
@@ -64,6 +67,14 @@ pub struct MaterialLook {
     pub color: Option<[f64; 3]>,
     /// `d`, or 1 - `Tr`: 1 is opaque.
     pub opacity: Option<f64>,
+    /// How metallic it is, 0 to 1.
+    pub metallic: Option<f64>,
+    /// How rough it is, 0 to 1.
+    pub roughness: Option<f64>,
+    /// Linear light that it sends out.
+    pub emissive: Option<[f64; 3]>,
+    /// Whether its back is seen.
+    pub double_sided: bool,
     /// `map_Kd`: path of the color texture as written.
     pub texture: Option<String>,
 }

@@ -1,6 +1,6 @@
 //! Files from elsewhere, at moments of their clips, and broken ones.
 
-use kiln::preview::asset::{self, AssetError, Cutoff};
+use kiln::preview::asset::{self, Cutoff, GltfFault};
 use kiln::preview::{Moment, Stage, StageError};
 
 use crate::bake::bake;
@@ -153,10 +153,10 @@ fn what_is_needed_and_unknown_is_named() {
     let json = r#"{"asset":{"version":"2.0"},"extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"]}"#;
     assert_eq!(
         asset::read(&container(json, &[])).expect_err("compressed"),
-        AssetError::Extension("KHR_draco_mesh_compression".to_owned())
+        GltfFault::Extension("KHR_draco_mesh_compression".to_owned())
     );
     let json = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]}"#;
-    assert_eq!(asset::read(&container(json, &[])).expect_err("a loop"), AssetError::Tree(0));
+    assert_eq!(asset::read(&container(json, &[])).expect_err("a loop"), GltfFault::Tree(0));
 }
 
 /// What is baked comes back: materials, names and normals.

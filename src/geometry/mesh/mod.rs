@@ -29,6 +29,7 @@ pub mod weld;
 mod wire;
 
 pub use polygon::PolygonMesh;
+pub(crate) use transform::NormalMap;
 pub use wire::{Strand, Wire, WirePoint};
 
 use glam::{DVec2, DVec3};

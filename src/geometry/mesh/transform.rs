@@ -91,21 +91,23 @@ impl PolygonMesh {
 }
 
 /// How a linear map acts on normals.
-struct NormalMap {
+pub(crate) struct NormalMap {
     matrix: DMat3,
-    mirrors: bool,
+    /// Whether it turns surfaces inside out.
+    pub(crate) mirrors: bool,
 }
 
 impl NormalMap {
     /// The cofactor matrix is the inverse transpose times the determinant, and exists for every map.
-    fn new(matrix: &DMat3) -> Self {
+    pub(crate) fn new(matrix: &DMat3) -> Self {
         let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
         let mirrors = x.cross(y).dot(z) < 0.0;
         let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
         Self { matrix: if mirrors { -cofactors } else { cofactors }, mirrors }
     }
 
-    fn apply(&self, normal: DVec3) -> DVec3 {
+    /// A normal of any length.
+    pub(crate) fn apply(&self, normal: DVec3) -> DVec3 {
         self.matrix * normal
     }
 }

@@ -58,7 +58,10 @@ fn text_of_several_solids() {
     );
     assert_eq!(read.mesh.newell(1), DVec3::Z);
     let only = |group: &str| {
-        super::read(TEXT.as_bytes(), &ImportOptions { group: Some(group.to_owned()), weld: None })
+        super::read(
+            TEXT.as_bytes(),
+            &ImportOptions { group: Some(group.to_owned()), ..ImportOptions::default() },
+        )
     };
     assert_eq!(only("left").expect("good").mesh.faces.len(), 1);
     assert_eq!(

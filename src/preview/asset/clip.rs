@@ -4,9 +4,9 @@
 
 use glam::{DQuat, DVec3};
 
-use super::accessor::Data;
-use super::{AssetError, Node, Place};
+use super::{GltfFault, Node, Place};
 use crate::geometry::number::{acos, sin};
+use crate::import::gltf::Data;
 
 /// A clip.
 #[derive(Clone, Debug)]
@@ -54,9 +54,9 @@ pub enum Track {
     Weights(Vec<f32>),
 }
 
-pub(super) fn read(data: &Data<'_>, own: &gltf::Animation<'_>) -> Result<Clip, AssetError> {
+pub(super) fn read(data: &Data<'_>, own: &gltf::Animation<'_>) -> Result<Clip, GltfFault> {
     use gltf::animation::Property;
-    let channels: Result<Vec<Channel>, AssetError> = own
+    let channels: Result<Vec<Channel>, GltfFault> = own
         .channels()
         .map(|channel| {
             let sampler = channel.sampler();
@@ -86,7 +86,7 @@ pub(super) fn read(data: &Data<'_>, own: &gltf::Animation<'_>) -> Result<Clip, A
                 _ => keys > 0 && values == keys,
             };
             if !fits {
-                return Err(AssetError::Accessor(output.index()));
+                return Err(GltfFault::Accessor(output.index()));
             }
             let times = times.into_iter().map(|[time]| time).collect();
             Ok(Channel { node: channel.target().node().index(), times, steps, track })

@@ -4,13 +4,6 @@ use std::collections::BTreeMap;
 
 use super::Asset;
 
-/// The coarser levels that a node names; indices that are none are told when the file is checked.
-pub(super) fn levels(node: &gltf::Node<'_>) -> Vec<usize> {
-    let ids = node.extension_value("MSFT_lod").and_then(|own| own.get("ids")?.as_array());
-    let index = |value: &serde_json::Value| value.as_u64().and_then(|index| usize::try_from(index).ok());
-    ids.into_iter().flatten().map(|value| index(value).unwrap_or(usize::MAX)).collect()
-}
-
 impl Asset {
     /// How many levels of detail some node has; 1 where none has more than itself.
     #[must_use]

@@ -2,8 +2,8 @@
 
 use glam::Vec4;
 
-use super::accessor::Data;
 use crate::geometry::number::{floor_index, single};
+use crate::import::gltf::Data;
 use crate::import::image;
 use crate::preview::color;
 

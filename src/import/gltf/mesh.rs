@@ -3,8 +3,7 @@
 use gltf::Semantic;
 use gltf::mesh::Mode;
 
-use super::AssetError;
-use super::accessor::Data;
+use super::{Data, GltfFault};
 use crate::geometry::number::count_of;
 
 /// A mesh.
@@ -54,15 +53,16 @@ pub struct Target {
     pub normals: Vec<[f32; 3]>,
 }
 
-pub(super) fn read(
+/// The mesh of a file; what is left out of it is noted.
+pub(crate) fn read(
     data: &Data<'_>,
     own: &gltf::Mesh<'_>,
     notes: &mut Vec<String>,
-) -> Result<Mesh, AssetError> {
+) -> Result<Mesh, GltfFault> {
     let mut parts = Vec::new();
     for primitive in own.primitives() {
         if primitive.mode() == Mode::Points {
-            notes.push(format!("the points of mesh {} are not drawn", own.index()));
+            notes.push(format!("the points of mesh {} are left out", own.index()));
             continue;
         }
         if let Some(part) = part(data, own.index(), &primitive)? {
@@ -73,7 +73,7 @@ pub(super) fn read(
     Ok(Mesh { name: own.name().unwrap_or_default().to_owned(), parts, weights })
 }
 
-fn part(data: &Data<'_>, mesh: usize, primitive: &gltf::Primitive<'_>) -> Result<Option<Part>, AssetError> {
+fn part(data: &Data<'_>, mesh: usize, primitive: &gltf::Primitive<'_>) -> Result<Option<Part>, GltfFault> {
     let Some(position) = primitive.get(&Semantic::Positions) else { return Ok(None) };
     let positions = data.numbers::<3>(&position)?;
     let count = positions.len();
@@ -82,10 +82,10 @@ fn part(data: &Data<'_>, mesh: usize, primitive: &gltf::Primitive<'_>) -> Result
         None => (0..count_of(count)).collect(),
     };
     if let Some(beyond) = indices.iter().find(|index| **index as usize >= count) {
-        return Err(AssetError::Vertex(mesh, *beyond));
+        return Err(GltfFault::Vertex(mesh, *beyond));
     }
     let (triangles, lines) = joined(primitive.mode(), &indices);
-    let targets: Result<Vec<Target>, AssetError> = primitive
+    let targets: Result<Vec<Target>, GltfFault> = primitive
         .morph_targets()
         .map(|target| {
             let read = |accessor: Option<gltf::Accessor<'_>>| match accessor {
@@ -116,8 +116,8 @@ fn part(data: &Data<'_>, mesh: usize, primitive: &gltf::Primitive<'_>) -> Result
     }))
 }
 
-fn same<T>(list: Vec<T>, count: usize, accessor: &gltf::Accessor<'_>) -> Result<Vec<T>, AssetError> {
-    if list.len() == count { Ok(list) } else { Err(AssetError::Accessor(accessor.index())) }
+fn same<T>(list: Vec<T>, count: usize, accessor: &gltf::Accessor<'_>) -> Result<Vec<T>, GltfFault> {
+    if list.len() == count { Ok(list) } else { Err(GltfFault::Accessor(accessor.index())) }
 }
 
 fn attribute<const N: usize>(
@@ -125,7 +125,7 @@ fn attribute<const N: usize>(
     primitive: &gltf::Primitive<'_>,
     semantic: &Semantic,
     count: usize,
-) -> Result<Vec<[f32; N]>, AssetError> {
+) -> Result<Vec<[f32; N]>, GltfFault> {
     match primitive.get(semantic) {
         Some(accessor) => same(data.numbers::<N>(&accessor)?, count, &accessor),
         None => Ok(Vec::new()),
@@ -137,7 +137,7 @@ fn colors(
     data: &Data<'_>,
     primitive: &gltf::Primitive<'_>,
     count: usize,
-) -> Result<Vec<[f32; 4]>, AssetError> {
+) -> Result<Vec<[f32; 4]>, GltfFault> {
     let Some(accessor) = primitive.get(&Semantic::Colors(0)) else { return Ok(Vec::new()) };
     let mut colors = same(data.numbers::<4>(&accessor)?, count, &accessor)?;
     if accessor.dimensions().multiplicity() == 3 {

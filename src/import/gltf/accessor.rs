@@ -2,12 +2,12 @@
 
 use gltf::accessor::{DataType, sparse::IndexType};
 
-use super::AssetError;
+use super::GltfFault;
 
 /// A document and the bytes of its buffers.
-pub(super) struct Data<'a> {
-    pub(super) document: &'a gltf::Document,
-    pub(super) buffers: Vec<&'a [u8]>,
+pub(crate) struct Data<'a> {
+    pub(crate) document: &'a gltf::Document,
+    pub(crate) buffers: Vec<&'a [u8]>,
 }
 
 /// Bytes with the width of their elements and the way from one to the next.
@@ -25,10 +25,10 @@ impl<'a> Elements<'a> {
 
 impl<'a> Data<'a> {
     /// The bytes of a part of a buffer.
-    pub(super) fn view(&self, view: &gltf::buffer::View<'_>) -> Result<&'a [u8], AssetError> {
+    pub(crate) fn view(&self, view: &gltf::buffer::View<'_>) -> Result<&'a [u8], GltfFault> {
         let buffer = self.buffers.get(view.buffer().index()).copied().unwrap_or_default();
         let end = view.offset().checked_add(view.length());
-        end.and_then(|end| buffer.get(view.offset()..end)).ok_or(AssetError::View(view.index()))
+        end.and_then(|end| buffer.get(view.offset()..end)).ok_or(GltfFault::View(view.index()))
     }
 
     fn elements(
@@ -36,8 +36,8 @@ impl<'a> Data<'a> {
         view: &gltf::buffer::View<'_>,
         offset: usize,
         (count, width, stride): (usize, usize, Option<usize>),
-    ) -> Result<Elements<'a>, AssetError> {
-        let outside = AssetError::View(view.index());
+    ) -> Result<Elements<'a>, GltfFault> {
+        let outside = GltfFault::View(view.index());
         let bytes = self.view(view)?.get(offset..).ok_or(outside.clone())?;
         let stride = stride.unwrap_or(width);
         let reach = count
@@ -50,10 +50,10 @@ impl<'a> Data<'a> {
     }
 
     /// The elements of an accessor, each of `N` numbers: whole ones of normalized accessors as shares of their most.
-    pub(super) fn numbers<const N: usize>(
+    pub(crate) fn numbers<const N: usize>(
         &self,
         accessor: &gltf::Accessor<'_>,
-    ) -> Result<Vec<[f32; N]>, AssetError> {
+    ) -> Result<Vec<[f32; N]>, GltfFault> {
         let (kind, normalized) = (accessor.data_type(), accessor.normalized());
         let read = |bytes: &[u8]| {
             let width = size(kind);
@@ -65,10 +65,10 @@ impl<'a> Data<'a> {
     }
 
     /// The elements of an accessor of whole numbers, each of `N`.
-    pub(super) fn whole<const N: usize>(
+    pub(crate) fn whole<const N: usize>(
         &self,
         accessor: &gltf::Accessor<'_>,
-    ) -> Result<Vec<[u32; N]>, AssetError> {
+    ) -> Result<Vec<[u32; N]>, GltfFault> {
         let kind = accessor.data_type();
         let read = |bytes: &[u8]| {
             let width = size(kind);
@@ -83,11 +83,11 @@ impl<'a> Data<'a> {
         numbers: usize,
         zero: T,
         read: impl Fn(&[u8]) -> T,
-    ) -> Result<Vec<T>, AssetError> {
+    ) -> Result<Vec<T>, GltfFault> {
         let (count, own) = (accessor.count(), accessor.dimensions().multiplicity());
         // Colors of three numbers are read as four; nothing else may differ.
         if own != numbers && !(own == 3 && numbers == 4) {
-            return Err(AssetError::Accessor(accessor.index()));
+            return Err(GltfFault::Accessor(accessor.index()));
         }
         let width = size(accessor.data_type()) * own;
         let mut all = match accessor.view() {
@@ -96,7 +96,7 @@ impl<'a> Data<'a> {
                 (0..count).map(|place| read(elements.at(place))).collect()
             }
             None if accessor.sparse().is_some() && count <= MOST => vec![zero; count],
-            None => return Err(AssetError::Accessor(accessor.index())),
+            None => return Err(GltfFault::Accessor(accessor.index())),
         };
         if let Some(sparse) = accessor.sparse() {
             let (places, values) = (sparse.indices(), sparse.values());
@@ -110,7 +110,7 @@ impl<'a> Data<'a> {
             let new = self.elements(&values.view(), values.offset(), (changed, width, None))?;
             for k in 0..changed {
                 let place = little(at.at(k)) as usize;
-                *all.get_mut(place).ok_or(AssetError::Accessor(accessor.index()))? = read(new.at(k));
+                *all.get_mut(place).ok_or(GltfFault::Accessor(accessor.index()))? = read(new.at(k));
             }
         }
         Ok(all)

@@ -1,0 +1,223 @@
+use glam::DVec3;
+use serde_json::{Value, json};
+
+use super::{GltfFault, base64, read, unescaped};
+use crate::import::{ImportError, ImportOptions, Imported};
+
+/// A square of four points at z = 0 as floats, the bytes of a strip of them, weights of all on the first of four joints,
+/// and another square as bytes, four for each point.
+fn square() -> Vec<u8> {
+    let points = [[0.0_f32, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0], [2.0, 1.0, 0.0]];
+    let mut bytes: Vec<u8> = points.into_iter().flatten().flat_map(f32::to_le_bytes).collect();
+    bytes.extend([0, 1, 2, 3]);
+    bytes.extend([[1.0_f32, 0.0, 0.0, 0.0]; 4].into_iter().flatten().flat_map(f32::to_le_bytes));
+    bytes.extend([0, 0, 0, 9, 255, 0, 0, 9, 0, 51, 0, 9, 255, 51, 0, 9]);
+    bytes
+}
+
+/// A document that shows the square as a strip, with changes.
+fn document(change: impl FnOnce(&mut Value)) -> Vec<u8> {
+    let mut document = json!({
+        "asset": { "version": "2.0" },
+        "buffers": [{ "uri": "a%20square.bin", "byteLength": 132 }],
+        "bufferViews": [
+            { "buffer": 0, "byteLength": 48 },
+            { "buffer": 0, "byteOffset": 48, "byteLength": 4 },
+            { "buffer": 0, "byteOffset": 52, "byteLength": 64 },
+            { "buffer": 0, "byteOffset": 116, "byteLength": 16, "byteStride": 4 },
+        ],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 4, "min": [0, 0, 0], "max": [2, 1, 0] },
+            { "bufferView": 1, "componentType": 5121, "type": "SCALAR", "count": 4 },
+        ],
+        "materials": [{ "name": "red", "pbrMetallicRoughness": { "baseColorFactor": [1, 0.5, 0, 1], "metallicFactor": 0.25 } }],
+        "meshes": [{ "name": "square", "primitives": [
+            { "attributes": { "POSITION": 0 }, "indices": 1, "mode": 5, "material": 0 },
+        ] }],
+        "nodes": [
+            { "name": "arm", "translation": [0, 0, 5], "children": [1] },
+            { "name": "hand", "mesh": 0, "scale": [1, 1, 2] },
+            { "name": "twin", "mesh": 0, "scale": [-1, 1, 1] },
+        ],
+        "scenes": [{ "nodes": [0, 2] }],
+        "scene": 0,
+    });
+    change(&mut document);
+    document.to_string().into_bytes()
+}
+
+fn read_with(document: &[u8], options: &ImportOptions) -> Result<Imported, ImportError> {
+    read(document, options, &mut |path| (path == "a square.bin").then(square))
+}
+
+fn read_all(change: impl FnOnce(&mut Value)) -> Result<Imported, ImportError> {
+    read_with(&document(change), &ImportOptions::default())
+}
+
+fn fault(change: impl FnOnce(&mut Value)) -> GltfFault {
+    match read_all(change) {
+        Err(ImportError::Gltf(fault)) => fault,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// The sum of the faces' normals by twice their areas.
+fn facing(found: &Imported) -> DVec3 {
+    (0..found.mesh.faces.len()).map(|face| found.mesh.newell(face)).sum()
+}
+
+#[test]
+fn nodes_place_what_they_show_and_mirrors_turn_it() {
+    let found = read_all(|_| {}).expect("two squares");
+    assert_eq!(found.mesh.faces.len(), 4);
+    // Both face z: the mirrored one was turned.
+    assert_eq!(facing(&found), DVec3::Z * 8.0);
+    let bounds = found.mesh.bounds();
+    assert_eq!((bounds.min, bounds.max), (DVec3::new(-2.0, 0.0, 0.0), DVec3::new(2.0, 1.0, 5.0)));
+    // Four points each.
+    assert_eq!(found.mesh.points.len(), 8);
+    assert_eq!(found.groups, ["hand", "twin", "square"]);
+    assert_eq!(found.mesh.materials, ["red"]);
+    let look = &found.materials[0];
+    assert_eq!((look.color, look.metallic), (Some([1.0, 0.5, 0.0]), Some(0.25)));
+    found.mesh.validate().expect("valid");
+}
+
+#[test]
+fn groups_are_nodes_with_what_is_below_and_meshes() {
+    let of = |group: &str| {
+        let options = ImportOptions { group: Some(group.to_owned()), ..ImportOptions::default() };
+        read_with(&document(|_| {}), &options)
+    };
+    for (group, faces) in [("arm", 2), ("hand", 2), ("twin", 2), ("square", 4)] {
+        assert_eq!(of(group).expect("a part").mesh.faces.len(), faces, "{group}");
+    }
+    assert!(matches!(of("foot"), Err(ImportError::UnknownGroup { known, .. }) if known.len() == 3));
+}
+
+#[test]
+fn fans_lists_and_loose_vertices_are_read() {
+    let faces = |mode: u32, indices: bool| {
+        let found = read_all(|document| {
+            let primitive = &mut document["meshes"][0]["primitives"][0];
+            primitive["mode"] = mode.into();
+            if !indices {
+                primitive.as_object_mut().expect("an object").remove("indices");
+            }
+            document["scenes"][0]["nodes"] = json!([2]);
+        });
+        found.map(|found| found.mesh.faces.len())
+    };
+    assert_eq!((faces(6, true), faces(5, false), faces(4, true)), (Ok(2), Ok(2), Ok(1)));
+    // Lines alone are no mesh.
+    assert!(matches!(faces(1, true), Err(ImportError::NoFaces { .. })));
+}
+
+#[test]
+fn sparse_and_whole_numbers_are_read() {
+    // The last point is moved to (7, 1, 0), by the first three numbers of what stands at byte 12.
+    let sparse = json!({
+        "count": 1,
+        "indices": { "bufferView": 1, "byteOffset": 3, "componentType": 5121 },
+        "values": { "bufferView": 0, "byteOffset": 12 },
+    });
+    let found = read_all(|document| {
+        document["accessors"][0]["sparse"] = sparse;
+        document["scenes"][0]["nodes"] = json!([2]);
+    });
+    assert_eq!(found.expect("a triangle").mesh.points.len(), 3, "the last point lies on the second");
+    for (normalized, most) in [(true, DVec3::new(1.0, 0.2, 0.0)), (false, DVec3::new(255.0, 51.0, 0.0))] {
+        let found = read_all(|document| {
+            document["extensionsUsed"] = json!(["KHR_mesh_quantization"]);
+            document["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+            document["accessors"][0] = json!({
+                "bufferView": 3, "componentType": 5121, "normalized": normalized, "type": "VEC3", "count": 4,
+                "min": [0, 0, 0], "max": [255, 51, 0],
+            });
+            document["nodes"][2]["scale"] = json!([1, 1, 1]);
+            document["scenes"][0]["nodes"] = json!([2]);
+        });
+        let bounds = found.expect("triangles").mesh.bounds();
+        assert!(bounds.min == DVec3::ZERO && bounds.max.distance(most) < 1e-7, "{bounds:?}");
+    }
+}
+
+#[test]
+fn skinned_meshes_stand_as_their_joints_rest() {
+    // Without matrices joints are bound at the origin.
+    let found = read_all(|document| {
+        document["accessors"].as_array_mut().expect("a list").extend([
+            // Zeros but for the first, which is written as zeros.
+            json!({ "componentType": 5121, "type": "VEC4", "count": 4, "sparse": {
+                "count": 1, "indices": { "bufferView": 1, "componentType": 5121 }, "values": { "bufferView": 0 } } }),
+            json!({ "bufferView": 2, "componentType": 5126, "type": "VEC4", "count": 4 }),
+        ]);
+        document["skins"] = json!([{ "joints": [0] }]);
+        let attributes = &mut document["meshes"][0]["primitives"][0]["attributes"];
+        attributes["JOINTS_0"] = 2.into();
+        attributes["WEIGHTS_0"] = 3.into();
+        document["nodes"][2]["skin"] = 0.into();
+        document["nodes"][1].as_object_mut().expect("an object").remove("mesh");
+    });
+    let found = found.expect("squares").mesh;
+    // The twin's own scale does not count: it stands where the arm does.
+    let bounds = found.bounds();
+    assert_eq!((bounds.min, bounds.max), (DVec3::Z * 5.0, DVec3::new(2.0, 1.0, 5.0)));
+}
+
+#[test]
+fn what_is_broken_is_named() {
+    assert_eq!(fault(|d| d["buffers"][0]["uri"] = "b.bin".into()), GltfFault::File(0, "b.bin".to_owned()));
+    assert_eq!(fault(|d| d["buffers"][0]["uri"] = "data:,x".into()), GltfFault::Base64(0));
+    assert_eq!(fault(|d| d["buffers"][0]["byteLength"] = 133.into()), GltfFault::Short(0, 132, 133));
+    assert_eq!(fault(|d| d["bufferViews"][0]["byteLength"] = 133.into()), GltfFault::View(0));
+    assert_eq!(fault(|d| d["accessors"][0]["count"] = 5.into()), GltfFault::View(0));
+    assert_eq!(fault(|d| d["accessors"][0]["type"] = "VEC2".into()), GltfFault::Accessor(0));
+    assert_eq!(fault(|d| d["nodes"][1]["children"] = json!([0])), GltfFault::Tree(0));
+    assert_eq!(fault(|d| d["nodes"][2]["children"] = json!([1])), GltfFault::Tree(1));
+    assert_eq!(fault(|d| d["scenes"][0]["nodes"] = json!([1])), GltfFault::Tree(1));
+    let draco = "KHR_draco_mesh_compression";
+    assert_eq!(fault(|d| d["extensionsRequired"] = json!([draco])), GltfFault::Extension(draco.to_owned()));
+    assert!(matches!(fault(|d| d["nodes"][1]["mesh"] = 1.into()), GltfFault::Document(_)));
+    assert!(matches!(fault(|d| d["nodes"][0]["children"] = json!([9])), GltfFault::Document(_)));
+    assert!(matches!(fault(|d| d["accessors"][0]["componentType"] = 1.into()), GltfFault::Document(_)));
+    // Points 0 to 2 are all that there are.
+    assert_eq!(fault(|d| d["accessors"][0]["count"] = 3.into()), GltfFault::Vertex(0, 3));
+    for bytes in [&b"glTF"[..], b"", b"{", b"{}", b"glTF\x02\0\0\0\x0c\0\0\0"] {
+        assert!(read_with(bytes, &ImportOptions::default()).is_err(), "{bytes:?}");
+    }
+}
+
+/// Many nodes may show one large mesh: what that comes to is known before.
+#[test]
+fn too_much_is_refused_before_it_is_read() {
+    let options = ImportOptions { most: 7, ..ImportOptions::default() };
+    let found = read_with(&document(|_| {}), &options);
+    assert!(matches!(found, Err(ImportError::TooMany { what: "triangles", limit: 7 })), "{found:?}");
+    let found = read_all(|document| {
+        document["accessors"][0]["count"] = (1_u64 << 53).into();
+        document["accessors"][1]["count"] = (1_u64 << 53).into();
+    });
+    assert!(matches!(found, Err(ImportError::TooMany { .. })), "{found:?}");
+}
+
+#[test]
+fn base64_is_that_of_the_standard() {
+    // RFC 4648, section 10.
+    for (text, bytes) in
+        [("", ""), ("Zg==", "f"), ("Zm8=", "fo"), ("Zm8", "fo"), ("Zm9v", "foo"), ("Zm9vYmFy", "foobar")]
+    {
+        assert_eq!(base64(text.as_bytes()).as_deref(), Some(bytes.as_bytes()), "{text}");
+    }
+    for text in ["Z", "Zm9vY", "Zm 9", "Zm-_", "Z===", "=Zg="] {
+        assert_eq!(base64(text.as_bytes()), None, "{text}");
+    }
+}
+
+#[test]
+fn paths_are_unescaped() {
+    assert_eq!(unescaped("a%20b%C3%A4.bin"), "a b\u{e4}.bin");
+    for strange in ["100%", "%2", "%zz", "%ff"] {
+        assert_eq!(unescaped(strange), strange);
+    }
+}
