@@ -426,7 +426,7 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
             Code::TornHeights,
             "write another `projection`, a map whose borders agree where the texture has a seam, or a `formula` without jumps",
         ),
-        RealizeError::Tessellate(TessellateError::NoHeight { .. }) => {
+        RealizeError::NoColor { .. } | RealizeError::Tessellate(TessellateError::NoHeight { .. }) => {
             (Code::FormulaValue, "say with `if` what holds there")
         }
         RealizeError::Tessellate(TessellateError::CrossesItself { .. }) => (

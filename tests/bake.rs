@@ -5,6 +5,7 @@
 mod accuracy;
 mod bevels;
 mod colliders;
+mod colors;
 mod coons;
 mod deformations;
 mod determinism;

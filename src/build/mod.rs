@@ -60,6 +60,7 @@ mod svg;
 mod sweep;
 mod trimmed;
 mod turned;
+mod vertex_color;
 
 use std::sync::Arc;
 

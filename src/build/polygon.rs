@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::Builder;
 use crate::geometry::mesh;
-use crate::geometry::mesh::PolygonMesh;
+use crate::geometry::mesh::{Color, PolygonMesh};
 use crate::geometry::planar::{Regions, regions};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
@@ -28,6 +28,10 @@ impl Builder<'_> {
             polygons.uvs = uvs.value.iter().map(|uv| DVec2::new(uv.x, uv.y)).collect();
             let faces = mesh.face_uvs.as_ref().map_or(&mesh.faces, |faces| &faces.value);
             polygons.corner_uvs = faces.iter().flat_map(|face| face.corners()).collect();
+        }
+        if let Some(colors) = &mesh.colors {
+            polygons.colors = colors.value.iter().map(|color| Color::held(color.linear)).collect();
+            polygons.corner_colors = polygons.corners.iter().map(|point| point.0).collect();
         }
         self.face_places = mesh.faces.iter().map(|face| face.span).collect();
         self.polygons(polygons, span)

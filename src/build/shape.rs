@@ -9,7 +9,7 @@ use crate::geometry::mesh;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, Count, Shape as Kind, ShapeDefinition, ShapeReference};
-use crate::model::{Density, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode};
+use crate::model::{Density, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode, VertexColor};
 
 impl Builder<'_> {
     /// The shape of a name, built at its first use.
@@ -46,6 +46,9 @@ impl Builder<'_> {
         let faces = std::mem::take(&mut self.face_places);
         let mut options = options?;
         options.placement *= place;
+        if let Some(color) = &mut options.vertex_color {
+            color.space = place;
+        }
         let handle = ShapeHandle(mesh::index(self.model.shapes.len()));
         self.normal_map(name, handle, definition, &options)?;
         self.model.shapes.push(Shape { name: name.to_owned(), recipe, options });
@@ -59,7 +62,14 @@ impl Builder<'_> {
             Some(name) => Some(self.material(&name.value.0)?),
             None => None,
         };
+        let vertex_color = match &written.vertex_color {
+            Some(color) => {
+                Some(VertexColor { law: self.color_law(&color.value)?, space: DAffine3::IDENTITY })
+            }
+            None => None,
+        };
         Some(ShapeOptions {
+            vertex_color,
             tolerance: written.tolerance.map(|tolerance| tolerance.value),
             density: written.segments.map(|grid| Density { u: grid.u, v: grid.v }),
             smoothing: match written.smoothing.value {

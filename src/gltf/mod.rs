@@ -8,6 +8,7 @@
 mod buffer;
 mod carrier;
 mod collider;
+mod color;
 mod lines;
 mod material;
 mod morph;
@@ -20,6 +21,7 @@ mod read_motion;
 mod write;
 
 pub use carrier::ReadLevels;
+pub use color::ReadColors;
 pub use profile::Profile;
 pub use read::{Geometry, Indices, Lines, Part, PositionBytes, Read, ReadError, read};
 pub use read_morph::ReadTarget;

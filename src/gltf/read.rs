@@ -14,6 +14,7 @@ use gltf::json::{Accessor, Index, Root};
 use thiserror::Error;
 
 use super::carrier::{ReadLevels, drop_carriers, read_levels};
+use super::color::{ReadColors, read_colors};
 use crate::geometry::mesh;
 use crate::geometry::number::size;
 use crate::scene::Grid;
@@ -49,6 +50,8 @@ pub struct Geometry<'a> {
     pub parts: Vec<Part>,
     /// Its primitives of lines.
     pub lines: Lines,
+    /// The range of its colors, where it has some.
+    pub colors: Option<ReadColors>,
 }
 
 /// Lines of one mesh.
@@ -249,7 +252,7 @@ fn geometry<'a>(data: Data<'_, 'a>, mesh: usize) -> Result<Geometry<'a>, ReadErr
     let indices = gathered_indices(binary, &primitives).map_err(missing)?;
     match indices.greatest().filter(|index| *index >= vertices) {
         Some(index) => Err(missing(index)),
-        None => Ok(Geometry { positions, indices, parts, lines }),
+        None => Ok(Geometry { positions, indices, parts, lines, colors: read_colors(root, binary, mesh)? }),
     }
 }
 

@@ -11,6 +11,7 @@ use gltf::json::{Accessor, Asset, Index, Mesh, Node, Root, Scene};
 use thiserror::Error;
 
 use super::buffer::{Binary, Content, Elements, at, index_accessors, index_width};
+use super::color::colors;
 use super::position::positions;
 use super::profile::Profile;
 use super::{carrier, collider, lines, material, morph, motion};
@@ -120,7 +121,8 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
         .map(|geometry| {
             let before = writer.binary.bytes.len();
             let triangles = (!geometry.mesh.triangles.is_empty()).then(|| writer.geometry(geometry));
-            let lines = lines::shared(&mut writer.root, &mut writer.binary, scene.grid, &geometry.wire);
+            let lines =
+                lines::shared(&mut writer.root, &mut writer.binary, geometry, (scene.grid, writer.small));
             (triangles, lines, (writer.binary.bytes.len() - before) as u64)
         })
         .collect();
@@ -194,12 +196,13 @@ fn binary_size(checked: Checked<'_>) -> usize {
         let vertices = geometry.mesh.vertices.len();
         let points = geometry.wire.points.len();
         let triangles = geometry.mesh.triangles.len() * 3 * index_width(vertices);
+        let color = if geometry.colored { 16 } else { 0 };
         let carried = if geometry.influences.is_some() { 8 } else { 0 };
         let states = geometry.targets.len() * (vertices * (24 + tangent) + 512);
-        vertices * (24 + tangent + uv + carried)
+        vertices * (24 + tangent + uv + color + carried)
             + states
             + triangles
-            + points * (12 + 2 * index_width(points))
+            + points * (12 + color + 2 * index_width(points))
             + 128
     };
     let images: usize = scene.images.iter().map(|image| image.bytes.len() + 4).sum();
@@ -221,6 +224,7 @@ struct Shared {
     normal: Index<Accessor>,
     tangent: Option<Index<Accessor>>,
     uv: Option<Index<Accessor>>,
+    color: Option<Index<Accessor>>,
     carried: Option<motion::Carried>,
     targets: Vec<gltf::json::mesh::MorphTarget>,
     /// For each run its indices.
@@ -249,13 +253,15 @@ impl Writer {
             directions.write(root, binary, Type::Vec4, wide)
         });
         let uv = geometry.uv.then(|| uvs(root, binary, mesh, self.small));
+        let shades = mesh.vertices.iter().map(|vertex| vertex.color);
+        let color = geometry.colored.then(|| colors(root, binary, shades, self.small));
         let carried = motion::carried(root, binary, geometry);
         let targets = morph::targets(root, binary, geometry, (self.grid, self.small));
         let ends = [0].into_iter().chain(mesh.runs.iter().map(|run| run.end));
         let counts = ends.zip(&mesh.runs).map(|(start, run)| (run.end - start) as usize * 3);
         let all = mesh.triangles.iter().flatten().map(|vertex| vertex.0);
         let indices = index_accessors(root, binary, all, (mesh.vertices.len(), false), counts);
-        Shared { position, normal, tangent, uv, carried, targets, indices }
+        Shared { position, normal, tangent, uv, color, carried, targets, indices }
     }
 
     fn mesh(
@@ -288,6 +294,9 @@ impl Writer {
             }
             if let Some(uv) = shared.uv {
                 attributes.insert(Valid::Valid(Semantic::TexCoords(0)), uv);
+            }
+            if let Some(color) = shared.color {
+                attributes.insert(Valid::Valid(Semantic::Colors(0)), color);
             }
             if let Some(carried) = &shared.carried {
                 attributes.insert(Valid::Valid(Semantic::Joints(0)), carried.joints);

@@ -1,8 +1,9 @@
-//! PLY (Stanford polygons), text and binary of either byte order: points, normals, texture coordinates, polygons, strips.
+//! PLY (Stanford polygons), text and binary of either byte order: points, normals, texture coordinates, colors, polygons, strips.
 //!
 //! The header says what stands in the file, element by element and property by property; what is not known is passed
-//! over. Texture coordinates are those of points or of the corners of faces. Colors of points have no place in the
-//! result, and a note says so.
+//! over. Texture coordinates are those of points or of the corners of faces, colors those of points or of faces. Colors are
+//! taken as on screen (sRGB), which is how programs write them: whole numbers up to the greatest of their kind, or numbers
+//! up to 1; opacity is as it stands.
 //!
 //! Promise: counts are held against the bytes that they need at least before anything is read. Source: G. Turk, The PLY
 //! polygon file format, Stanford University, 1994.
@@ -14,10 +15,11 @@ use glam::{DVec2, DVec3};
 use thiserror::Error;
 
 use self::body::Body;
-use self::header::{Element, Header};
+use self::header::{Element, Kind};
 use super::{ImportError, ImportOptions, Imported, Note};
-use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::mesh::polygon::NONE;
+use crate::geometry::mesh::{Color, PolygonMesh, index};
+use crate::geometry::number::srgb_to_linear;
 
 /// Why a file is no mesh.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -84,7 +86,12 @@ pub enum PlyFault {
 const POINT: [&[&str]; 3] = [&["x"], &["y"], &["z"]];
 const NORMAL: [&[&str]; 3] = [&["nx"], &["ny"], &["nz"]];
 const PLACE: [&[&str]; 2] = [&["u", "s", "texture_u", "texture_s"], &["v", "t", "texture_v", "texture_t"]];
-const COLORS: [&str; 3] = ["red", "diffuse_red", "r"];
+const COLOR: [&[&str]; 4] = [
+    &["red", "diffuse_red", "r"],
+    &["green", "diffuse_green", "g"],
+    &["blue", "diffuse_blue", "b"],
+    &["alpha", "a"],
+];
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 /// Reads a file. Linear in its length.
@@ -107,7 +114,41 @@ pub fn read(bytes: &[u8], options: &ImportOptions) -> Result<Imported, ImportErr
             _ => (0..element.count).try_for_each(|row| body.row(element, row, |_, _| Ok(())))?,
         }
     }
-    found.finish(&header, options)
+    found.finish(options)
+}
+
+/// Where the colors of an element stand.
+struct Shade {
+    /// For red, green, blue and alpha the column and the greatest number.
+    columns: [Option<(usize, f64)>; 4],
+}
+
+impl Shade {
+    fn of(element: &Element) -> Option<Self> {
+        let columns = COLOR.map(|names| {
+            let column = element.find(names)?;
+            let property = &element.properties[column];
+            let most = match property.kind {
+                Kind::I8 => f64::from(i8::MAX),
+                Kind::U8 => f64::from(u8::MAX),
+                Kind::I16 => f64::from(i16::MAX),
+                Kind::U16 => f64::from(u16::MAX),
+                Kind::I32 => f64::from(i32::MAX),
+                Kind::U32 => f64::from(u32::MAX),
+                Kind::F32 | Kind::F64 => 1.0,
+            };
+            property.count.is_none().then_some((column, most))
+        });
+        columns[..3].iter().all(Option::is_some).then_some(Self { columns })
+    }
+
+    fn color(&self, numbers: &[f64], beyond: &mut u64) -> Color {
+        let parts = self.columns.map(|column| column.map_or(1.0, |(column, most)| numbers[column] / most));
+        *beyond += u64::from(parts.iter().any(|part| !(0.0..=1.0).contains(part)));
+        let [red, green, blue, alpha] = parts;
+        let [red, green, blue] = [red, green, blue].map(|part| srgb_to_linear(part.clamp(0.0, 1.0)));
+        Color::held([red, green, blue, alpha])
+    }
 }
 
 #[derive(Default)]
@@ -115,6 +156,13 @@ struct Found {
     mesh: PolygonMesh,
     normals: Vec<DVec3>,
     places: Vec<DVec2>,
+    /// Colors of points.
+    colors: Vec<Color>,
+    /// Colors of faces, each at the corners of its face.
+    face_colors: Vec<Color>,
+    corner_colors: Vec<u32>,
+    /// Colors that reach beyond their range.
+    beyond: u64,
     /// Faces that have fewer than three corners.
     small: u64,
 }
@@ -125,6 +173,7 @@ impl Found {
             names.iter().map(|names| element.find(names)).collect()
         };
         let (point, normal, place) = (columns(&POINT), columns(&NORMAL), columns(&PLACE));
+        let shade = Shade::of(element);
         for row in 0..element.count {
             let mut numbers = vec![0.0; element.properties.len()];
             body.row(element, row, |column, values| {
@@ -138,6 +187,10 @@ impl Found {
             };
             self.mesh.points.push(vector(&point).unwrap_or_default());
             self.normals.extend(vector(&normal));
+            if let Some(shade) = &shade {
+                let color = shade.color(&numbers, &mut self.beyond);
+                self.colors.push(color);
+            }
             // Pictures have their first row on top, and v counts from below.
             self.places.extend(place.as_ref().map(|at| DVec2::new(numbers[at[0]], 1.0 - numbers[at[1]])));
         }
@@ -146,6 +199,8 @@ impl Found {
 
     fn faces(&mut self, element: &Element, body: &mut Body<'_>) -> Result<(), PlyFault> {
         let (corners, places) = (element.find(&CORNERS), element.find(&["texcoord"]));
+        let shade = Shade::of(element);
+        let mut numbers = vec![0.0; element.properties.len()];
         for row in 0..element.count {
             let (mut own, mut own_places) = (Vec::new(), Vec::new());
             body.row(element, row, |column, values| {
@@ -153,6 +208,8 @@ impl Found {
                     own = values.to_vec();
                 } else if Some(column) == places {
                     own_places = values.to_vec();
+                } else if let [value] = values {
+                    numbers[column] = *value;
                 }
                 Ok(())
             })?;
@@ -163,11 +220,16 @@ impl Found {
                 continue;
             }
             self.face(&own);
+            if let Some(shade) = &shade {
+                let color = shade.color(&numbers, &mut self.beyond);
+                self.corner_colors.extend(own.iter().map(|_| index(self.face_colors.len())));
+                self.face_colors.push(color);
+            }
             if own_places.len() == 2 * own.len() {
                 let before = self.mesh.corners.len() - own.len();
                 self.mesh.corner_uvs.resize(before, NONE);
                 for place in own_places.chunks_exact(2) {
-                    self.mesh.corner_uvs.push(crate::geometry::mesh::index(self.mesh.uvs.len()));
+                    self.mesh.corner_uvs.push(index(self.mesh.uvs.len()));
                     self.mesh.uvs.push(DVec2::new(place[0], 1.0 - place[1]));
                 }
             }
@@ -213,7 +275,7 @@ impl Found {
         self.mesh.push_face(&[corners], None, 0);
     }
 
-    fn finish(mut self, header: &Header, options: &ImportOptions) -> Result<Imported, ImportError> {
+    fn finish(mut self, options: &ImportOptions) -> Result<Imported, ImportError> {
         let points = self.mesh.points.len();
         if self.mesh.faces.is_empty() {
             return Err(ImportError::NoFaces { vertices: crate::geometry::number::count_of(points) });
@@ -236,9 +298,20 @@ impl Found {
         if self.small > 0 {
             tell(format!("{} faces have fewer than three corners and are left out", self.small));
         }
-        let colored = header.elements.iter().any(|element| element.find(&COLORS).is_some());
-        if colored {
-            tell("its colors are left out: looks are those of materials".to_owned());
+        if !self.colors.is_empty() {
+            self.mesh.corner_colors = corners();
+            self.mesh.colors = self.colors;
+            if !self.face_colors.is_empty() {
+                tell("its points have colors, so those of its faces are left out".to_owned());
+            }
+        } else if self.corner_colors.len() == self.mesh.corners.len() {
+            self.mesh.corner_colors = self.corner_colors;
+            self.mesh.colors = self.face_colors;
+        } else if !self.face_colors.is_empty() {
+            tell("some of its faces have no colors, so those of the others are left out".to_owned());
+        }
+        if self.beyond > 0 {
+            tell(format!("{} colors have parts beyond their range, which are held back", self.beyond));
         }
         if let Some(weld) = options.weld {
             self.mesh.weld(weld);

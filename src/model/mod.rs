@@ -12,6 +12,7 @@ mod motion;
 mod shape;
 mod solid;
 mod subdivide;
+mod vertex_color;
 
 pub use collider::{Collider, Fit};
 pub use deform::{AxialBending, Bending, PathBending};
@@ -27,6 +28,7 @@ pub use motion::{
 pub use shape::{Density, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode};
 pub use solid::{Hollow, KeptSide, PlaneCut, SolidOperation, SolidRecipe};
 pub use subdivide::SubdivisionRecipe;
+pub use vertex_color::{ColorLaw, VertexColor};
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec2, DVec3};
 
-use super::{Bending, Displacement, MaterialHandle, SolidRecipe, SubdivisionRecipe};
+use super::{Bending, Displacement, MaterialHandle, SolidRecipe, SubdivisionRecipe, VertexColor};
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh::PolygonMesh;
 use crate::geometry::tessellate::{
@@ -116,6 +116,8 @@ pub struct ShapeOptions {
     pub uv: UvMode,
     /// Repeats of the texture.
     pub uv_scale: DVec2,
+    /// Colors of its vertices.
+    pub vertex_color: Option<VertexColor>,
     /// Its material.
     pub material: Option<MaterialHandle>,
     /// Scale, rotation and place, applied to the finished shape.

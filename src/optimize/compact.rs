@@ -102,7 +102,7 @@ mod tests {
     use glam::{DVec2, DVec3};
 
     use super::compact_mesh;
-    use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+    use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex};
 
     #[test]
     fn unused_and_collapsed_parts_go_and_the_rest_keeps_its_order() {
@@ -110,6 +110,7 @@ mod tests {
             point: PointIndex(point),
             normal: DVec3::Z,
             uv: DVec2::ZERO,
+            color: Color::WHITE,
             anchor: Anchor::default(),
         };
         let triangle = |a: u32, b: u32, c: u32| [a, b, c].map(VertexIndex);

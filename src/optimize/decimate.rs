@@ -19,6 +19,9 @@ const NORMAL: f64 = 0.5;
 /// A difference of 1 in texture coordinates counts as this many times the distance that is allowed.
 const UV: f64 = 8.0;
 
+/// A difference of 1 in a part of a color counts as this many times the distance that is allowed.
+const COLOR: f64 = 1.0;
+
 /// Samples miss the greatest distance by less than this part of it: they lie that near to each other.
 const MARGIN: f64 = 1.1;
 
@@ -40,7 +43,7 @@ pub fn decimated(geometry: &Geometry, finest: &Geometry, allowed: f64) -> Option
     let (mut good, mut bad, mut best) = (0.0, f64::INFINITY, None);
     let mut error = room;
     for _ in 0..TRIES {
-        let mesh = thinned(&geometry.mesh, geometry.uv, error);
+        let mesh = thinned(&geometry.mesh, (geometry.uv, geometry.colored), error);
         let distance = distance_between(&mesh, &finest.mesh) * MARGIN;
         if distance <= room {
             good = error;
@@ -61,22 +64,27 @@ pub fn decimated(geometry: &Geometry, finest: &Geometry, allowed: f64) -> Option
 }
 
 /// The mesh with fewer triangles, run by run; vertices and points stay, used or not.
-fn thinned(mesh: &Mesh, uv: bool, error: f64) -> Mesh {
+fn thinned(mesh: &Mesh, (uv, colored): (bool, bool), error: f64) -> Mesh {
     let center = mesh.bounds().center();
     let single3 = |vector: glam::DVec3| vector.as_vec3().to_array();
     let positions: Vec<[f32; 3]> =
         mesh.vertices.iter().map(|vertex| single3(mesh.points[vertex.point.subscript()] - center)).collect();
     let bounds = mesh.bounds();
     let size = (bounds.max - bounds.min).max_element();
-    let normal = [single(NORMAL * error / size); 3];
-    let weights: Vec<f32> =
-        if uv { [&normal[..], &[single(UV * error / size); 2]].concat() } else { normal.to_vec() };
+    let share = |weight: f64| single(weight * error / size);
+    let mut weights = vec![share(NORMAL); 3];
+    weights.resize(if uv { 5 } else { 3 }, share(UV));
+    weights.resize(weights.len() + if colored { 4 } else { 0 }, share(COLOR));
     let values: Vec<f32> = mesh
         .vertices
         .iter()
         .flat_map(|vertex| {
             let uv = uv.then(|| vertex.uv.as_vec2().to_array());
-            single3(vertex.normal).into_iter().chain(uv.into_iter().flatten())
+            let color = colored.then_some(vertex.color.0);
+            single3(vertex.normal)
+                .into_iter()
+                .chain(uv.into_iter().flatten())
+                .chain(color.into_iter().flatten())
         })
         .collect();
     let seams = if uv { seams(mesh) } else { vec![false; mesh.vertices.len()] };

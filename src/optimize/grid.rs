@@ -15,7 +15,7 @@ use crate::geometry::mesh::weld::weld_equal;
 use crate::geometry::mesh::{PointIndex, Vertex, VertexIndex};
 use crate::geometry::number::Bounds;
 use crate::geometry::tessellate::Evidence;
-use crate::packing::signed_byte;
+use crate::packing::{share_byte, signed_byte};
 use crate::scene::{Geometry, Grid, Scene};
 
 /// Steps that a whole number of 16 bits tells apart.
@@ -162,11 +162,14 @@ fn join_points(geometry: &mut Geometry) {
     mesh.points = welded.points;
 }
 
+/// What is written of a vertex: its point, and the bits of its normal, texture coordinates and color.
+type Alike = (u32, [i8; 3], [u64; 2], [u8; 4]);
+
 /// Vertices that will be written alike become one.
 fn join_vertices(geometry: &mut Geometry) {
     let mesh = &mut geometry.mesh;
     // Only looked up, never walked.
-    let mut known: HashMap<(u32, [i8; 3], [u64; 2]), u32> = HashMap::with_capacity(mesh.vertices.len());
+    let mut known: HashMap<Alike, u32> = HashMap::with_capacity(mesh.vertices.len());
     let mut kept: Vec<Vertex> = Vec::with_capacity(mesh.vertices.len());
     let places: Vec<u32> = mesh
         .vertices
@@ -176,6 +179,7 @@ fn join_vertices(geometry: &mut Geometry) {
                 vertex.point.0,
                 vertex.normal.to_array().map(signed_byte),
                 vertex.uv.to_array().map(|part| (part + 0.0).to_bits()),
+                vertex.color.0.map(share_byte),
             );
             *known.entry(key).or_insert_with(|| {
                 kept.push(*vertex);

@@ -302,7 +302,7 @@ mod tests {
 
     use super::{Order, PIECE, order};
     use crate::geometry::mesh;
-    use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+    use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex};
     use crate::geometry::tessellate::{Deviation, Evidence};
     use crate::report::facts::vertex_cache;
     use crate::scene::Geometry;
@@ -318,6 +318,7 @@ mod tests {
                     point,
                     normal: DVec3::Y,
                     uv: DVec2::new(f64::from(column), f64::from(row)),
+                    color: Color::WHITE,
                     anchor: Anchor { source: 0, u: f64::from(column), v: f64::from(row) },
                 });
             }
@@ -341,6 +342,7 @@ mod tests {
             mesh,
             wire: mesh::Wire::default(),
             uv: true,
+            colored: false,
             tangents: Some(tangents),
             influences: None,
             targets: Vec::new(),

@@ -44,6 +44,18 @@ pub fn signed_byte(number: f64) -> i8 {
     byte
 }
 
+/// A share of 1 as a normalized byte: the nearest.
+#[must_use]
+pub fn share_byte(share: f32) -> u8 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "clamped to the range of the type"
+    )]
+    let byte = (share.clamp(0.0, 1.0) * 255.0).round() as u8;
+    byte
+}
+
 /// Numbers with one exponent for all of them: what the filter EXPONENTIAL reads back as floats. Each is rounded to a
 /// multiple of 2^-16 of the power of two above the greatest; numbers that are not finite count as 0.
 #[must_use]

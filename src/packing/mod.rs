@@ -18,7 +18,7 @@ pub use codec::{
     decode_attributes, decode_sequence, decode_triangles, encode_attributes, encode_sequence,
     encode_triangles,
 };
-pub use filter::{Filter, exponential, octahedral, signed_byte};
+pub use filter::{Filter, exponential, octahedral, share_byte, signed_byte};
 pub use order::{order_for_cache, order_for_strips};
 pub use simplify::{Attributes, simplified};
 pub use tangent::corner_tangents;

@@ -4,7 +4,7 @@
 
 use glam::Vec3;
 
-use crate::geometry::number::{floor_count, pow, single};
+use crate::geometry::number::{floor_count, single, srgb_to_linear};
 
 /// The linear value of an sRGB byte.
 #[must_use]
@@ -13,13 +13,9 @@ pub(super) fn linear(byte: u8) -> f32 {
 }
 
 thread_local! {
-    static TABLE: [f32; 256] = std::array::from_fn(|byte| single(from_srgb(byte as f64 / 255.0)));
+    static TABLE: [f32; 256] = std::array::from_fn(|byte| single(srgb_to_linear(byte as f64 / 255.0)));
     /// Linear values halfway between those of a byte and the next.
-    static HALVES: [f32; 255] = std::array::from_fn(|byte| single(from_srgb((byte as f64 + 0.5) / 255.0)));
-}
-
-fn from_srgb(value: f64) -> f64 {
-    if value <= 0.04045 { value / 12.92 } else { pow((value + 0.055) / 1.055, 2.4) }
+    static HALVES: [f32; 255] = std::array::from_fn(|byte| single(srgb_to_linear((byte as f64 + 0.5) / 255.0)));
 }
 
 /// The sRGB byte nearest to a linear value; what lies outside 0 to 1 is cut off.

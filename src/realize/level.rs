@@ -33,6 +33,7 @@ pub fn level(model: &Model, options: &Options, finest: &Realized) -> Vec<Option<
         Some(Geometry {
             name: geometry.name.clone(),
             uv: geometry.uv,
+            colored: geometry.colored,
             tolerance: made.tolerance,
             deviation: made.deviation,
             mesh: made.mesh,

@@ -30,6 +30,7 @@ mod source;
 mod subdivide;
 mod swept;
 mod textured;
+mod vertex_color;
 mod window;
 
 pub use collider::colliders;
@@ -44,7 +45,7 @@ use thiserror::Error;
 use crate::geometry::mesh::polygon::PolygonError;
 use crate::geometry::solid::SolidFault;
 use crate::geometry::subdivide::SubdivideFault;
-use crate::geometry::tessellate::{DeformError, TessellateError};
+use crate::geometry::tessellate::{DeformError, TessellateError, told};
 use crate::model::{MaterialHandle, Model, ShapeHandle};
 use crate::scene::Scene;
 
@@ -183,6 +184,12 @@ pub enum RealizeError {
     FlatCollider {
         /// Index of the collider.
         collider: usize,
+    },
+    /// A color by a formula that has no value somewhere.
+    #[error("its color has no value at {}", told(*place))]
+    NoColor {
+        /// Where, in the document's unit.
+        place: DVec3,
     },
     /// Lines have no weights.
     #[error("it has lines, and joints carry triangles alone")]

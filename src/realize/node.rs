@@ -6,6 +6,7 @@ use super::limit::{Cost, Spent};
 use super::material::group_by_material;
 use super::shape::{self, Made, Maker};
 use super::textured::wants_uv;
+use super::vertex_color::is_colored;
 use super::{Options, RealizeError, Realized, morph, motion};
 use crate::geometry::mesh;
 use crate::model::{MaterialHandle, Model, ShapeHandle};
@@ -110,6 +111,7 @@ fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Mo
         scene.geometries.push(Geometry {
             name: model.shape(*handle).name.clone(),
             uv: wants_uv(model, *handle, &overrides),
+            colored: is_colored(&made.mesh, &made.wire),
             tolerance: made.tolerance,
             deviation: made.deviation,
             mesh: made.mesh,

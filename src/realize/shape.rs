@@ -8,6 +8,7 @@ use super::limit::{self, Cost};
 use super::material::{middle, own_or, show_normals, source_of, split_by_element};
 use super::reach::bent;
 use super::source::source_count;
+use super::vertex_color::color;
 use super::{Faces, Level, Note, Options, RealizeError};
 use crate::geometry::mesh;
 use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
@@ -135,6 +136,9 @@ impl<'a> Maker<'a> {
             for vertex in &mut made.mesh.vertices {
                 vertex.uv *= shape.options.uv_scale;
             }
+        }
+        if let Some(law) = &shape.options.vertex_color {
+            color(&mut made, law)?;
         }
         place(&mut made, &shape.options.placement);
         if let Some(map) = self.model.normal_maps.iter().find(|map| map.shape == handle) {

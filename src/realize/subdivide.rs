@@ -5,10 +5,11 @@ use glam::{DAffine3, DVec3};
 use super::inherited::Inherited;
 use super::limit;
 use super::shape::{Made, Maker, cost, flatten};
+use super::vertex_color::color_polygons;
 use super::{Faces, Level, Note, RealizeError};
 use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
 use crate::geometry::mesh::polygon::Face;
-use crate::geometry::mesh::{self, PointIndex, PolygonMesh, Wire};
+use crate::geometry::mesh::{self, Color, PointIndex, PolygonMesh, Wire};
 use crate::geometry::subdivide::{Aim, Options, Scheme, SubdivideFault, subdivide};
 use crate::geometry::tessellate::{Deviation, Evidence};
 use crate::model::{MaterialHandle, Recipe, ShapeHandle, Smoothing, SubdivisionRecipe};
@@ -86,7 +87,7 @@ impl Maker<'_> {
 
     /// The polygons of a shape where it has such, or else its triangles.
     fn cage(&self, handle: ShapeHandle, inherited: Inherited) -> Result<Cage, RealizeError> {
-        if let Some((mut mesh, mut materials)) = self.polygons_of(handle) {
+        if let Some((mut mesh, mut materials)) = self.polygons_of(handle)? {
             let own = self.model.shape(handle).options.material;
             mesh.transform(&self.model.shape(handle).options.placement);
             if own.is_some() {
@@ -102,28 +103,36 @@ impl Maker<'_> {
     }
 
     /// The polygons of a recipe before its placement.
-    fn polygons_of(&self, handle: ShapeHandle) -> Option<Cage> {
-        match &self.model.shape(handle).recipe {
+    fn polygons_of(&self, handle: ShapeHandle) -> Result<Option<Cage>, RealizeError> {
+        let shape = self.model.shape(handle);
+        let cage = match &shape.recipe {
             Recipe::Polygons { mesh, materials } => Some((mesh.clone(), materials.clone())),
             Recipe::Cuboid { size, center } => Some((cuboid(*size, *center), Vec::new())),
             Recipe::Assembly(parts) => match parts[..] {
                 [(part, map)] => {
-                    let (mut mesh, materials) = self.cage_of_part(part, &map)?;
-                    mesh.normals.clear();
-                    Some((mesh, materials))
+                    let cage = self.cage_of_part(part, &map)?;
+                    cage.map(|(mut mesh, materials)| {
+                        mesh.normals.clear();
+                        (mesh, materials)
+                    })
                 }
                 _ => None,
             },
             _ => None,
+        };
+        let Some((mut mesh, materials)) = cage else { return Ok(None) };
+        if let Some(law) = &shape.options.vertex_color {
+            color_polygons(&mut mesh, law)?;
         }
+        Ok(Some((mesh, materials)))
     }
 
-    fn cage_of_part(&self, part: ShapeHandle, map: &DAffine3) -> Option<Cage> {
-        let (mut mesh, mut materials) = self.polygons_of(part)?;
+    fn cage_of_part(&self, part: ShapeHandle, map: &DAffine3) -> Result<Option<Cage>, RealizeError> {
+        let Some((mut mesh, mut materials)) = self.polygons_of(part)? else { return Ok(None) };
         let options = &self.model.shape(part).options;
         mesh.transform(&(*map * options.placement));
         name_material(&mut mesh, &mut materials, options.material);
-        Some((mesh, materials))
+        Ok(Some((mesh, materials)))
     }
 }
 
@@ -153,6 +162,12 @@ fn cuboid(size: DVec3, center: DVec3) -> PolygonMesh {
     PolygonMesh::from_faces(points, &faces)
 }
 
+/// For each corner its color, which is that of its vertex; none where all are white.
+fn corner_colors(mesh: &mesh::Mesh) -> Vec<u32> {
+    let colored = mesh.vertices.iter().any(|vertex| vertex.color != Color::WHITE);
+    if colored { mesh.triangles.iter().flatten().map(|vertex| vertex.0).collect() } else { Vec::new() }
+}
+
 fn of_triangles(made: &Made) -> Cage {
     let mesh = &made.mesh;
     let corner = |vertex: mesh::VertexIndex| mesh.vertices[vertex.subscript()].point;
@@ -162,6 +177,8 @@ fn of_triangles(made: &Made) -> Cage {
         loop_ends: (1..=mesh::index(mesh.triangles.len())).map(|face| 3 * face).collect(),
         uvs: mesh.vertices.iter().map(|vertex| vertex.uv).collect(),
         corner_uvs: mesh.triangles.iter().flatten().map(|vertex| vertex.0).collect(),
+        colors: mesh.vertices.iter().map(|vertex| vertex.color).collect(),
+        corner_colors: corner_colors(mesh),
         materials: vec![String::new(); made.materials.len()],
         ..PolygonMesh::default()
     };

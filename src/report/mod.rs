@@ -171,6 +171,9 @@ pub struct ShapeFacts {
     /// What is measured.
     #[serde(flatten)]
     pub facts: MeshFacts,
+    /// The colors of its vertices, where it has some.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub colors: Option<ColorFacts>,
     /// Its lines.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lines: Option<LineFacts>,
@@ -182,6 +185,16 @@ pub struct ShapeFacts {
     /// The polygons it was made from.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub polygons: Option<PolygonFacts>,
+}
+
+/// The range of the colors of vertices: linear red, green, blue and alpha.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct ColorFacts {
+    /// The least of each part.
+    pub min: [f32; 4],
+    /// The greatest of each part.
+    pub max: [f32; 4],
 }
 
 /// Distance between written triangles and exact shape.
@@ -335,6 +348,7 @@ fn shape_facts(
     }
     Ok(ShapeFacts {
         primitives: geometry.parts.len() + geometry.lines.parts.len(),
+        colors: geometry.colors.map(|colors| ColorFacts { min: colors.min, max: colors.max }),
         lines,
         deviation: DeviationFacts {
             tolerance: known.tolerance,

@@ -6,7 +6,7 @@ use thiserror::Error;
 mod morph;
 mod motion;
 
-use crate::geometry::mesh::VertexIndex;
+use crate::geometry::mesh::{Color, VertexIndex};
 
 use super::{Collider, Geometry, MeshUse, Node, Scene};
 
@@ -50,6 +50,9 @@ pub enum SceneError {
     /// A normal or tangent is not of unit length.
     #[error("shape `{0}` has a {1} that is not of unit length")]
     NotUnit(String, &'static str),
+    /// A color of a vertex is none.
+    #[error("shape `{0}` has a vertex color whose parts are not from 0 to 1")]
+    Color(String),
     /// A position is not on the grid of the scene.
     #[error("shape `{0}` has a coordinate that is not on the grid of the model")]
     OffGrid(String),
@@ -152,6 +155,9 @@ fn check_geometry(geometry: &Geometry) -> Result<(), SceneError> {
         if !vertex.uv.is_finite() {
             return Err(SceneError::NotFinite(name()));
         }
+        if !is_color(vertex.color) {
+            return Err(SceneError::Color(name()));
+        }
     }
     let count = mesh.vertices.len();
     if mesh.triangles.iter().any(|triangle| triangle.iter().any(|vertex| vertex.0 as usize >= count)) {
@@ -169,6 +175,10 @@ fn check_geometry(geometry: &Geometry) -> Result<(), SceneError> {
     }
     check_runs(geometry)?;
     check_tangents(geometry)
+}
+
+fn is_color(color: Color) -> bool {
+    color.0.iter().all(|part| (0.0..=1.0).contains(part))
 }
 
 fn check_grid(scene: &Scene, geometry: &Geometry) -> Result<(), SceneError> {
@@ -193,6 +203,9 @@ fn check_wire(geometry: &Geometry) -> Result<(), SceneError> {
     let limit = f64::from(f32::MAX);
     if !wire.points.iter().all(|point| point.position.abs().max_element() <= limit) {
         return Err(SceneError::NotFinite(name()));
+    }
+    if !wire.points.iter().all(|point| is_color(point.color)) {
+        return Err(SceneError::Color(name()));
     }
     let covers = wire.ranges().all(|(_, range)| range.len() >= 2);
     if !covers || wire.strands.last().is_none_or(|strand| strand.end as usize != wire.points.len()) {

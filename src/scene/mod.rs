@@ -83,6 +83,8 @@ pub struct Geometry {
     pub wire: Wire,
     /// Whether texture coordinates are written.
     pub uv: bool,
+    /// Whether colors of vertices are written.
+    pub colored: bool,
     /// For each vertex a tangent and the sign of the bitangent, where any material has a normal texture.
     pub tangents: Option<Vec<[f32; 4]>>,
     /// For each point of the mesh the joints that carry it, as indices of the skin's joints.

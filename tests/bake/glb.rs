@@ -18,6 +18,8 @@ pub(crate) struct Mesh {
     pub(crate) positions: Vec<[f64; 3]>,
     pub(crate) normals: Vec<[f64; 3]>,
     pub(crate) uvs: Option<Vec<[f64; 2]>>,
+    /// Linear red, green and blue, and opacity where that is written.
+    pub(crate) colors: Option<Vec<Vec<f64>>>,
     pub(crate) triangles: Vec<[usize; 3]>,
     pub(crate) lines: Lines,
 }
@@ -27,6 +29,8 @@ pub(crate) struct Mesh {
 pub(crate) struct Lines {
     pub(crate) positions: Vec<[f64; 3]>,
     pub(crate) segments: Vec<[usize; 2]>,
+    /// As of a mesh.
+    pub(crate) colors: Option<Vec<Vec<f64>>>,
     /// The material of each primitive.
     pub(crate) materials: Vec<Option<usize>>,
 }
@@ -171,6 +175,19 @@ impl Glb {
         Some(self.accessor(count(index)).into_iter().map(row).collect())
     }
 
+    fn colors(&self, primitive: &Value) -> Option<Vec<Vec<f64>>> {
+        let index = count(primitive["attributes"].get("COLOR_0")?);
+        let accessor = &self.list("accessors")[index];
+        let whole = count(&accessor["componentType"]) == 5121;
+        assert_eq!(accessor["normalized"] == true, whole);
+        let mut colors = self.accessor(index);
+        if whole {
+            colors.iter_mut().flatten().for_each(|part| *part /= 255.0);
+        }
+        assert!(colors.iter().flatten().all(|part| (0.0..=1.0).contains(part)));
+        Some(colors)
+    }
+
     /// The primitives of a mesh: those of triangles, then those of lines.
     fn primitives(&self, index: usize) -> (Vec<&Value>, Vec<&Value>) {
         let primitives = self.list("meshes")[index]["primitives"].as_array().expect("primitives");
@@ -199,6 +216,7 @@ impl Glb {
             positions: self.vectors(first, "POSITION").unwrap_or_default(),
             normals: self.vectors(first, "NORMAL").unwrap_or_default(),
             uvs: self.vectors(first, "TEXCOORD_0"),
+            colors: self.colors(first),
             triangles: triangles.to_vec(),
             lines: self.lines(index),
         }
@@ -213,6 +231,7 @@ impl Glb {
         Lines {
             positions: self.vectors(first, "POSITION").expect("positions"),
             segments: segments.to_vec(),
+            colors: self.colors(first),
             materials: lines.iter().map(|one| one.get("material").map(count)).collect(),
         }
     }
@@ -270,6 +289,9 @@ impl Glb {
                 assert!(count(material) < self.list("materials").len());
             }
         }
+        if let Some(colors) = mesh.colors {
+            assert_eq!(colors.len(), vertices);
+        }
         if let Some(uvs) = mesh.uvs {
             assert!(uvs.len() == vertices && uvs.iter().flatten().all(|number| number.is_finite()));
         }
@@ -284,7 +306,7 @@ impl Glb {
             assert_eq!(count(&accessor["componentType"]) == 5125, vertices > 65_535, "{vertices} vertices");
             let attributes = primitive["attributes"].as_object().expect("attributes");
             // Without normals they are shown without light.
-            assert_eq!(attributes.keys().collect::<Vec<_>>(), ["POSITION"]);
+            assert!(attributes.keys().all(|name| matches!(name.as_str(), "POSITION" | "COLOR_0")));
             self.check_bounds(count(&attributes["POSITION"]));
             if let Some(material) = primitive.get("material") {
                 assert!(count(material) < self.list("materials").len());

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+import trimesh
 
+from checks.document import Document
 from inputs.picture import Picture
 from test_blender import model
 
@@ -160,3 +162,45 @@ def test_tangents_follow_u_and_bitangents_go_up_the_picture(kiln: Kiln) -> None:
             bitangents = np.cross(normals[:, 0], tangents[:, 0, :3]) * tangents[:, 0, 3:]
             assert (np.einsum("ti,ti->t", tangents[:, 0, :3], along_u) > 0).mean() > 0.99
             assert (np.einsum("ti,ti->t", bitangents, along_v) < 0).mean() > 0.99
+
+
+SHADED = """
+tolerance = 0.002
+[shape.s.vertex-color]
+red = "= 0.5 + x / 4"
+green = "= 0.5 + ny / 2"
+blue = "= 0.5 + z / 4"
+[shape.s.sphere]
+radius = 1
+"""
+
+
+def test_colors_are_the_formulas_of_place_and_normal(kiln: Kiln) -> None:
+    asset = kiln.bake(SHADED)
+    points, shades = attribute(asset, "POSITION"), attribute(asset, "COLOR_0")
+    np.testing.assert_allclose(shades, 0.5 + points * [0.25, 0.5, 0.25], atol=1e-6)
+    facts = asset.shape("s")["colors"]
+    np.testing.assert_allclose(facts["min"], [*shades.min(axis=0), 1], atol=1e-7)
+    np.testing.assert_allclose(facts["max"], [*shades.max(axis=0), 1], atol=1e-7)
+
+
+def test_colors_of_small_profiles_are_bytes_near_the_formulas(kiln: Kiln) -> None:
+    kiln.bake(SHADED, "--profile", "core", "--profile", "quantized")
+    small = Document(kiln.folder / "out" / "model.quantized.glb")
+    grid = small.json["asset"]["extras"]["grid"]
+    attributes = small.meshes[0].primitives[0].attributes
+    points = attributes["POSITION"] * grid["step"] + np.asarray(grid["offset"])
+    shades = attributes["COLOR_0"]
+    assert shades.dtype == np.uint8
+    assert (shades[:, 3] == 255).all()
+    # Half a step of a byte, and what normals in bytes and a grid within the tolerance may differ by.
+    np.testing.assert_allclose(shades[:, :3] / 255, 0.5 + points * [0.25, 0.5, 0.25], atol=0.5 / 255 + 0.002)
+
+
+def test_colors_are_read_by_trimesh(kiln: Kiln) -> None:
+    asset = kiln.bake(SHADED)
+    mesh = next(iter(trimesh.load(asset.path).geometry.values()))
+    shades = np.asarray(mesh.visual.vertex_colors) / 255
+    wanted = 0.5 + np.asarray(mesh.vertices) * [0.25, 0.5, 0.25]
+    assert np.abs(shades[:, :3] - wanted).max() < 1.01 / 255
+    assert (shades[:, 3] == 1).all()

@@ -20,6 +20,7 @@ def written(path: Path, *, binary: bool, colored: bool) -> pymeshlab.MeshSet:
     meshes.create_sphere(radius=1.0, subdiv=3)
     meshes.compute_coord_by_function(x="x * (1 + 0.1 * sin(5 * y))", y="y", z="z * 1.5")
     meshes.compute_normal_per_vertex()
+    meshes.compute_color_by_function_per_vertex(x="120 + 100 * x", y="90 + 60 * y", z="130 + 80 * z", a="255")
     meshes.save_current_mesh(
         str(path), binary=binary, save_vertex_normal=True, save_vertex_color=colored, save_wedge_texcoord=False
     )
@@ -29,7 +30,7 @@ def written(path: Path, *, binary: bool, colored: bool) -> pymeshlab.MeshSet:
 @pytest.mark.parametrize("binary", [False, True])
 @pytest.mark.parametrize("colored", [False, True])
 def test_files_of_meshlab_are_read(kiln: Kiln, binary: bool, colored: bool) -> None:
-    """Points, faces and normals; colors are left out, with a note."""
+    """Points, faces, normals and colors."""
     meshes = written(kiln.folder / "ball.ply", binary=binary, colored=colored)
     spec = '[shape.b.import]\nfile = "ball.ply"\n'
     baked = kiln.bake(spec)
@@ -47,6 +48,15 @@ def test_files_of_meshlab_are_read(kiln: Kiln, binary: bool, colored: bool) -> N
     for place, normal in zip(mesh.positions[::9], normals[::9], strict=True):
         nearest = int(np.linalg.norm(places - place, axis=1).argmin())
         assert np.abs(wanted[nearest] - normal).max() < 1e-4
+    shades = mesh.surfaces[0].attributes.get("COLOR_0")
+    assert (shades is not None) == colored
+    if colored:
+        screen = np.round(own.vertex_color_matrix()[:, :3] * 255) / 255
+        for place, shade in zip(mesh.positions[::7], shades[::7], strict=True):
+            nearest = int(np.linalg.norm(places - place, axis=1).argmin())
+            # By the standard's own formula, to one step of the byte that a file holds.
+            dark, light = screen[nearest] / 12.92, ((screen[nearest] + 0.055) / 1.055) ** 2.4
+            assert np.abs(np.where(screen[nearest] <= 0.04045, dark, light) - shade).max() < 0.01
 
 
 def test_a_file_that_is_cut_off_is_refused(kiln: Kiln) -> None:

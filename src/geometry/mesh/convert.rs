@@ -1,7 +1,7 @@
 //! Polygons into triangles with normals: a [`PolygonMesh`] becomes a [`Mesh`].
 //!
 //! Promise: every boundary edge of every face is kept, so what was closed stays closed; vertices are split only
-//! where a normal or a UV differs; triangles are grouped by material and otherwise keep the order of the faces.
+//! where a normal, a UV or a color differs; triangles are grouped by material and otherwise keep the order of the faces.
 
 use std::collections::HashMap;
 
@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 use crate::geometry::mesh::normals::{Smooth, corner_normals};
 use crate::geometry::mesh::polygon::{NONE, PolygonError};
 use crate::geometry::mesh::triangulate::{split_quad, triangulate_in_space, view};
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, PolygonMesh, Run, Vertex, VertexIndex, index};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PolygonMesh, Run, Vertex, VertexIndex, index};
 
 /// Where normals come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -123,7 +123,7 @@ fn normals_of(source: &PolygonMesh, options: &ConvertOptions) -> Vec<DVec3> {
 /// Vertices in the chain of one point; a table holds the others.
 const CHAIN_LIMIT: usize = 16;
 
-/// Makes vertices, one for each different (point, normal, UV).
+/// Makes vertices, one for each different (point, normal, UV, color).
 struct Splitter<'a> {
     source: &'a PolygonMesh,
     normals: &'a [DVec3],
@@ -134,7 +134,7 @@ struct Splitter<'a> {
     newest: Vec<u32>,
     older: Vec<u32>,
     /// Vertices of points whose chains grew long.
-    crowded: HashMap<(u32, [u64; 5]), u32>,
+    crowded: HashMap<(u32, [u64; 5], [u32; 4]), u32>,
 }
 
 impl<'a> Splitter<'a> {
@@ -215,33 +215,37 @@ impl<'a> Splitter<'a> {
         let uv = self.source.corner_uvs.get(corner).filter(|&&uv| uv != NONE);
         let uv = uv.map_or(DVec2::ZERO, |&uv| self.source.uvs[uv as usize]);
         let normal = self.normals[corner];
+        let color = self.source.corner_colors.get(corner);
+        let color = color.map_or(Color::WHITE, |&color| self.source.colors[color as usize]);
+        let wanted = Vertex { point, normal, uv, color, anchor: Anchor::default() };
         let mut vertex = self.newest[point.subscript()];
         for _ in 0..CHAIN_LIMIT {
             if vertex == NONE {
-                let made = self.push_vertex(point, normal, uv);
+                let made = self.push_vertex(wanted);
                 self.older.push(std::mem::replace(&mut self.newest[point.subscript()], made.0));
                 return made;
             }
             let made = &self.vertices[vertex as usize];
-            if made.normal == normal && made.uv == uv {
+            if made.normal == normal && made.uv == uv && made.color == color {
                 return VertexIndex(vertex);
             }
             vertex = self.older[vertex as usize];
         }
         // Adding zero turns -0 into 0: equal values must have equal bits.
         let bits = [normal.x, normal.y, normal.z, uv.x, uv.y].map(|value| (value + 0.0).to_bits());
-        if let Some(&vertex) = self.crowded.get(&(point.0, bits)) {
+        let shade = color.0.map(|part| (part + 0.0).to_bits());
+        if let Some(&vertex) = self.crowded.get(&(point.0, bits, shade)) {
             return VertexIndex(vertex);
         }
-        let vertex = self.push_vertex(point, normal, uv);
+        let vertex = self.push_vertex(wanted);
         self.older.push(NONE);
-        self.crowded.insert((point.0, bits), vertex.0);
+        self.crowded.insert((point.0, bits, shade), vertex.0);
         vertex
     }
 
-    fn push_vertex(&mut self, point: PointIndex, normal: DVec3, uv: DVec2) -> VertexIndex {
+    fn push_vertex(&mut self, wanted: Vertex) -> VertexIndex {
         let vertex = index(self.vertices.len());
-        self.vertices.push(Vertex { point, normal, uv, anchor: Anchor::default() });
+        self.vertices.push(wanted);
         VertexIndex(vertex)
     }
 

@@ -10,6 +10,7 @@
 //! or free of self-intersections; [`topology`] measures the first on any index buffer.
 
 pub mod cache;
+mod color;
 pub mod convert;
 pub mod crossing;
 pub mod distance;
@@ -28,6 +29,7 @@ pub mod triangulate;
 pub mod weld;
 mod wire;
 
+pub use color::Color;
 pub use polygon::PolygonMesh;
 pub(crate) use transform::NormalMap;
 pub use wire::{Strand, Wire, WirePoint};
@@ -81,6 +83,8 @@ pub struct Vertex {
     pub normal: DVec3,
     /// Texture coordinates; v grows downwards as in glTF.
     pub uv: DVec2,
+    /// Its color; white where it has none.
+    pub color: Color,
     /// Place on the exact source.
     pub anchor: Anchor,
 }

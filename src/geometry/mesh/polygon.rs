@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use thiserror::Error;
 
-use crate::geometry::mesh::{PointIndex, index};
+use crate::geometry::mesh::{Color, PointIndex, index};
 use crate::geometry::number::Bounds;
 
 /// Index into [`PolygonMesh::uvs`] or [`PolygonMesh::normals`] of a corner that has none.
@@ -42,6 +42,10 @@ pub struct PolygonMesh {
     pub normals: Vec<DVec3>,
     /// For each corner an index into `normals`, or [`NONE`]; empty when no corner has one.
     pub corner_normals: Vec<u32>,
+    /// Colors.
+    pub colors: Vec<Color>,
+    /// For each corner an index into `colors`; empty when the mesh has none.
+    pub corner_colors: Vec<u32>,
     /// Names of materials.
     pub materials: Vec<String>,
     /// Whether [`Face::smoothing`] was given; otherwise an angle decides which edges are hard.
@@ -88,7 +92,7 @@ pub enum PolygonError {
     AttributeOutOfRange {
         /// Which face.
         face: u32,
-        /// `texture coordinate`, `normal` or `material`.
+        /// `texture coordinate`, `normal`, `color` or `material`.
         what: &'static str,
         /// The index it asks for.
         index: u32,
@@ -209,6 +213,9 @@ impl PolygonMesh {
         if !self.corner_normals.is_empty() {
             check("corner_normals", self.corner_normals.len(), corners)?;
         }
+        if !self.corner_colors.is_empty() {
+            check("corner_colors", self.corner_colors.len(), corners)?;
+        }
         Ok(())
     }
 
@@ -256,6 +263,17 @@ impl PolygonMesh {
             if let Some(&normal) = self.corner_normals.get(corner) {
                 check("normal", normal, self.normals.len())?;
             }
+            if let Some(&color) = self.corner_colors.get(corner)
+                && color as usize >= self.colors.len()
+            {
+                let count = index(self.colors.len());
+                return Err(PolygonError::AttributeOutOfRange {
+                    face: index(face),
+                    what: "color",
+                    index: color,
+                    count,
+                });
+            }
         }
         self.faces[face].material.map_or(Ok(()), |used| {
             if (used as usize) < self.materials.len() {
@@ -293,6 +311,7 @@ mod tests {
     use glam::{DVec2, DVec3};
 
     use super::{NONE, PolygonError, PolygonMesh, newell};
+    use crate::geometry::mesh::Color;
 
     fn square() -> PolygonMesh {
         let points = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
@@ -354,6 +373,12 @@ mod tests {
         let mut mesh = square();
         mesh.corner_uvs = vec![NONE];
         let expected = PolygonError::Length { what: "corner_uvs", found: 1, expected: 4 };
+        assert_eq!(mesh.validate(), Err(expected));
+
+        let mut mesh = square();
+        mesh.colors = vec![Color::WHITE];
+        mesh.corner_colors = vec![0, 0, NONE, 0];
+        let expected = PolygonError::AttributeOutOfRange { face: 0, what: "color", index: NONE, count: 1 };
         assert_eq!(mesh.validate(), Err(expected));
 
         let mut mesh = square();

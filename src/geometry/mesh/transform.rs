@@ -81,7 +81,7 @@ impl PolygonMesh {
         for ring in 0..self.loop_ends.len() {
             let rest = self.corners_of_loop(ring).start + 1..self.corners_of_loop(ring).end;
             self.corners[rest.clone()].reverse();
-            for attribute in [&mut self.corner_uvs, &mut self.corner_normals] {
+            for attribute in [&mut self.corner_uvs, &mut self.corner_normals, &mut self.corner_colors] {
                 if !attribute.is_empty() {
                     attribute[rest.clone()].reverse();
                 }

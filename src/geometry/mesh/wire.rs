@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use crate::geometry::mesh::{Anchor, index};
+use crate::geometry::mesh::{Anchor, Color, index};
 use crate::geometry::number::Bounds;
 
 /// Curves as chains of points. Strands cover all points in order; each has a point of its own for every corner, so
@@ -20,6 +20,8 @@ pub struct Wire {
 pub struct WirePoint {
     /// Where it is, metres.
     pub position: DVec3,
+    /// Its color; white where it has none.
+    pub color: Color,
     /// Place on the exact curve: its source and, as u, its parameter.
     pub anchor: Anchor,
 }
@@ -113,7 +115,11 @@ mod tests {
 
     fn points(count: u32) -> Vec<WirePoint> {
         (0..count)
-            .map(|k| WirePoint { position: DVec3::X * f64::from(k), anchor: Anchor::default() })
+            .map(|k| WirePoint {
+                position: DVec3::X * f64::from(k),
+                color: crate::geometry::mesh::Color::WHITE,
+                anchor: Anchor::default(),
+            })
             .collect()
     }
 

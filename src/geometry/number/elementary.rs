@@ -45,6 +45,12 @@ door! {
     hypot(x, y) = libm::hypot;
 }
 
+/// The light of a number for a screen, both from 0 to 1: the transfer function of sRGB (IEC 61966-2-1, 1999).
+#[must_use]
+pub fn srgb_to_linear(screen: f64) -> f64 {
+    if screen <= 0.040_45 { screen / 12.92 } else { pow((screen + 0.055) / 1.055, 2.4) }
+}
+
 /// Sine and cosine of an angle in radians.
 #[must_use]
 pub fn sin_cos(x: f64) -> (f64, f64) {

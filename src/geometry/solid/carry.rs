@@ -7,10 +7,13 @@ use glam::{DVec2, DVec3};
 
 use super::group::origins;
 use super::{Combined, Lying, Raw, Stock};
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex, index};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex, index};
 
 /// Difference up to which two normals, or texture coordinates of unit size, on one point are the same.
 const ALIKE: f64 = 1e-9;
+
+/// Difference up to which two parts of a color are the same: rounding to single precision.
+const SHADE: f32 = 1e-6;
 
 /// Part of the reach of a mesh that places are off by in double precision.
 const ROUNDING: f64 = 1e-12;
@@ -122,6 +125,7 @@ fn alike(one: &Vertex, other: &Vertex) -> bool {
     one.anchor.source == other.anchor.source
         && (one.normal - other.normal).abs().max_element() <= ALIKE
         && (one.uv - other.uv).abs().max_element() <= ALIKE * size
+        && (0..4).all(|part| (one.color.0[part] - other.color.0[part]).abs() <= SHADE)
 }
 
 /// A triangle with what its corners carry.
@@ -185,6 +189,7 @@ impl<'a> Base<'a> {
             point: PointIndex(0),
             normal: if one_normal { a.normal } else { normal.try_normalize().unwrap_or(a.normal) },
             uv,
+            color: Color::mixed([a.color, b.color, c.color], weights),
             anchor: self.anchor(weights, periods),
         }
     }

@@ -43,11 +43,14 @@ pub(super) fn origins(mesh: &Mesh) -> Vec<u32> {
     origins
 }
 
-/// Whether a triangle has one normal, and one source.
+/// Whether a triangle has one normal, one color and one source. Colors that change are not drawn out over a face: they would
+/// leave their bounds.
 fn is_flat(mesh: &Mesh, triangle: &[VertexIndex; 3]) -> bool {
     let [a, b, c] = triangle.map(|vertex| &mesh.vertices[vertex.subscript()]);
     a.normal == b.normal
         && b.normal == c.normal
+        && a.color == b.color
+        && b.color == c.color
         && a.anchor.source == b.anchor.source
         && b.anchor.source == c.anchor.source
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex, index};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex, index};
 use crate::geometry::number::Bounds;
 
 /// All points on the side of a plane that its normal points to.
@@ -64,6 +64,7 @@ pub fn half_space(half: &HalfSpace, bounds: &Bounds, source: u32) -> Mesh {
                 point: PointIndex(index(*corner)),
                 normal,
                 uv: DVec2::new(part(0), 1.0 - part(1)),
+                color: Color::WHITE,
                 anchor: Anchor { source, u: 0.0, v: 0.0 },
             });
         }

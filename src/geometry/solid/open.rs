@@ -99,6 +99,7 @@ impl Cutter<'_> {
             point: PointIndex(point),
             normal: one.normal.lerp(other.normal, part).try_normalize().unwrap_or(one.normal),
             uv: one.uv.lerp(other.uv, part),
+            color: one.color.lerp(other.color, part),
             anchor: between(one.anchor, other.anchor, part, self.periods),
         });
         self.vertices.insert((from.0, to.0), made);
@@ -122,7 +123,7 @@ mod tests {
 
     use super::cut_open;
     use crate::geometry::mesh::topology;
-    use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+    use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex};
     use crate::geometry::solid::HalfSpace;
 
     /// A square of two triangles in the plane z = 0, from 0 to 1.
@@ -132,6 +133,7 @@ mod tests {
             point: PointIndex(k),
             normal: DVec3::Z,
             uv: DVec2::new(u, v),
+            color: Color::WHITE,
             anchor: Anchor { source: 0, u, v },
         };
         Mesh {

@@ -7,7 +7,7 @@ use super::check::moments;
 use super::{Check, Combination, Combined, Making, SolidFault, Stock, combine};
 use crate::geometry::mesh::platonic::{Platonic, PlatonicSize, Pose, platonic};
 use crate::geometry::mesh::weld::weld_equal;
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex, index, topology};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex, index, topology};
 
 /// Numbers that look random: Knuth's MMIX generator.
 struct Dice(u64);
@@ -37,7 +37,13 @@ fn mesh(points: &[DVec3], triangles: &[[u32; 3]]) -> Mesh {
         mesh.vertices.extend(corners.map(|point| {
             let place = points[point as usize];
             let anchor = Anchor { source: 0, u: place.x + place.z, v: place.y };
-            Vertex { point: PointIndex(point), normal, uv: DVec2::new(place.x - place.z, place.y), anchor }
+            Vertex {
+                point: PointIndex(point),
+                normal,
+                uv: DVec2::new(place.x - place.z, place.y),
+                color: Color::WHITE,
+                anchor,
+            }
         }));
         mesh.triangles.push([first, first + 1, first + 2].map(VertexIndex));
     }

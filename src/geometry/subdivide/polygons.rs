@@ -11,7 +11,7 @@ use super::topology::{NONE, Ring, Topology};
 use super::{Scheme, Split, SubdivideFault, dual_limit, limit, refine};
 use crate::geometry::mesh::polygon::Face;
 use crate::geometry::mesh::triangulate::triangulate_in_space;
-use crate::geometry::mesh::{PointIndex, PolygonMesh, index};
+use crate::geometry::mesh::{Color, PointIndex, PolygonMesh, index};
 use crate::geometry::number::cos_degrees;
 
 /// The most steps: more fit no mesh.
@@ -134,6 +134,8 @@ struct Cage {
     level: Level,
     /// Texture coordinates over a topology of their own.
     charts: Option<Level>,
+    /// Colors likewise.
+    colors: Option<Level>,
     /// For each face the face of the given mesh it comes from.
     origin: Vec<u32>,
     faces: usize,
@@ -153,23 +155,20 @@ impl Cage {
         let topology = Topology::of_faces(flat.start, vertex_of, vertices)?;
         let values = mesh.points.iter().flat_map(|point| point.to_array()).collect();
         let channels = vec![Channel { width: 3, values }];
-        let uvs: Vec<u32> = (flat.source.iter())
-            .map(|corner| mesh.corner_uvs.get(*corner as usize).copied().unwrap_or(NONE))
-            .collect();
-        let carried = uvs.iter().all(|uv| *uv != NONE);
-        let charts = carried.then(|| chart(&topology, &uvs)).map(|(topology, taken)| {
-            let values = taken.iter().flat_map(|uv| mesh.uvs[*uv as usize].to_array()).collect();
-            Level { topology, channels: vec![Channel { width: 2, values }], ..Level::default() }
-        });
-        // Where faces do not keep their corners, seams cannot be kept.
-        let seamless = |charts: &Level| {
-            !charts.topology.edge_corner.iter().zip(&topology.edge_corner).any(|(a, b)| a != b)
-                && charts.topology.edges() == topology.edges()
+        let named = |corners: &[u32]| -> Vec<u32> {
+            let of = |corner: &u32| corners.get(*corner as usize).copied().unwrap_or(NONE);
+            flat.source.iter().map(of).collect()
         };
-        let keeps = matches!(options.scheme.split(), Split::Quads | Split::Triangles);
-        let charts = charts.filter(|charts| keeps || seamless(charts));
+        let uvs = mesh.uvs.iter().flat_map(|uv| uv.to_array()).collect();
+        let charts =
+            charted(&topology, options.scheme, &named(&mesh.corner_uvs), &Channel { width: 2, values: uvs });
+        let shades = mesh.colors.iter().flat_map(|color| color.parts()).collect();
+        let (names, shades) = (named(&mesh.corner_colors), Channel { width: 4, values: shades });
+        let colors = charted(&topology, options.scheme, &names, &shades)
+            .or_else(|| (!names.contains(&NONE)).then(|| averaged(&topology, &names, &shades)));
         let level = Level { topology, channels, ..Level::default() };
-        Ok(Self { level, charts, origin: flat.origin, faces, corners, triangulated: flat.triangulated })
+        let triangulated = flat.triangulated;
+        Ok(Self { level, charts, colors, origin: flat.origin, faces, corners, triangulated })
     }
 
     fn sharpen(&mut self, options: &Options) -> Result<(), SubdivideFault> {
@@ -202,7 +201,7 @@ impl Cage {
             self.check_vertex(*vertex)?;
             vertices[*vertex as usize] = *sharpness;
         }
-        if let Some(charts) = &mut self.charts {
+        for charts in [&mut self.charts, &mut self.colors].into_iter().flatten() {
             sharpen_charts(charts, &self.level.topology, &edges, &vertices);
         }
         if edges.iter().any(|sharpness| *sharpness > 0.0) {
@@ -253,7 +252,9 @@ impl Cage {
     fn refine(&mut self, scheme: Scheme) {
         self.origin = origins(&self.level.topology, scheme, &self.origin);
         self.level = refine(&self.level, scheme);
-        self.charts = self.charts.take().map(|charts| refine(&charts, scheme));
+        for charts in [&mut self.charts, &mut self.colors].into_iter().flatten() {
+            *charts = refine(charts, scheme);
+        }
     }
 
     fn mesh(self, given: &PolygonMesh, options: &Options, end: End) -> PolygonMesh {
@@ -278,17 +279,25 @@ impl Cage {
             made.normals = limit.normals;
             made.corner_normals = limit.corner_normals;
         }
-        if let Some(charts) = self.charts {
-            let (values, corners) = match (dual, on_limit) {
-                (true, _) => {
-                    let (topology, limit) = dual_limit(&flattened(&charts));
-                    (pairs(limit).channels, topology.corner_vertex)
-                }
-                (false, true) => (limit_of(&charts, options.scheme).channels, charts.topology.corner_vertex),
-                (false, false) => (charts.channels, charts.topology.corner_vertex),
-            };
-            made.uvs = values[0].values.chunks_exact(2).map(DVec2::from_slice).collect();
+        let ended = |charts: Level| match (dual, on_limit) {
+            (true, _) => {
+                let (topology, limit) = dual_limit(&widened(&charts));
+                (limit.channels, topology.corner_vertex)
+            }
+            (false, true) => {
+                (super::limit(&widened(&charts), options.scheme).channels, charts.topology.corner_vertex)
+            }
+            (false, false) => (charts.channels, charts.topology.corner_vertex),
+        };
+        if let Some((values, corners)) = self.charts.map(ended) {
+            // Widened or not, the first two numbers are the coordinates.
+            made.uvs = values[0].values.chunks_exact(values[0].width).map(DVec2::from_slice).collect();
             made.corner_uvs = corners;
+        }
+        if let Some((values, corners)) = self.colors.map(ended) {
+            // Schemes that go through their vertices swing beyond them.
+            made.colors = (values[0].values.as_chunks().0.iter()).map(|parts| Color::held(*parts)).collect();
+            made.corner_colors = corners;
         }
         made.corners = topology.corner_vertex.into_iter().map(PointIndex).collect();
         made
@@ -313,31 +322,52 @@ fn sharpen_charts(charts: &mut Level, whole: &Topology, edges: &[f64], vertices:
     charts.vertex_sharpness = made;
 }
 
-fn limit_of(level: &Level, scheme: Scheme) -> Limit {
-    pairs(limit(&flattened(level), scheme))
+/// Values of corners over a topology of their own, torn where faces disagree. None where there are none, and where faces
+/// do not keep their corners, so that seams cannot be kept.
+fn charted(topology: &Topology, scheme: Scheme, names: &[u32], values: &Channel) -> Option<Level> {
+    if names.contains(&NONE) {
+        return None;
+    }
+    let (torn, taken) = chart(topology, names);
+    let keeps = matches!(scheme.split(), Split::Quads | Split::Triangles);
+    let seamless = torn.edge_corner == topology.edge_corner;
+    let channel = Channel {
+        width: values.width,
+        values: taken.iter().flat_map(|name| values.value(*name as usize)).copied().collect(),
+    };
+    (keeps || seamless).then(|| Level { topology: torn, channels: vec![channel], ..Level::default() })
+}
+
+/// One value for each vertex: the mean of those of its corners.
+fn averaged(topology: &Topology, names: &[u32], values: &Channel) -> Level {
+    let mut mean = Channel { width: values.width, values: vec![0.0; topology.vertices() * values.width] };
+    let mut counts = vec![0.0; topology.vertices()];
+    for (vertex, name) in topology.corner_vertex.iter().zip(names) {
+        counts[*vertex as usize] += 1.0;
+        let sum = &mut mean.values[*vertex as usize * values.width..];
+        sum.iter_mut().zip(values.value(*name as usize)).for_each(|(sum, value)| *sum += value);
+    }
+    for (sum, count) in mean.values.chunks_exact_mut(values.width).zip(counts) {
+        sum.iter_mut().for_each(|part| *part /= f64::max(count, 1.0));
+    }
+    Level { topology: topology.clone(), channels: vec![mean], ..Level::default() }
 }
 
 /// Values of two numbers have no normals: a third makes them flat positions.
-fn flattened(level: &Level) -> Level {
+fn widened(level: &Level) -> Level {
     let channel = &level.channels[0];
+    let width = channel.width.max(3);
     let values = (0..level.topology.vertices()).flat_map(|vertex| {
         let value = channel.value(vertex);
-        [value[0], value[1], 0.0]
+        (0..width).map(|part| value.get(part).copied().unwrap_or(0.0))
     });
     Level {
-        channels: vec![Channel { width: 3, values: values.collect() }],
+        channels: vec![Channel { width, values: values.collect() }],
         topology: level.topology.clone(),
         edge_sharpness: level.edge_sharpness.clone(),
         vertex_sharpness: level.vertex_sharpness.clone(),
         step: level.step,
     }
-}
-
-/// The first two numbers of each flat position.
-fn pairs(mut limit: Limit) -> Limit {
-    let values = limit.channels[0].values.chunks_exact(3).flat_map(|value| [value[0], value[1]]).collect();
-    limit.channels = vec![Channel { width: 2, values }];
-    limit
 }
 
 /// For each face of the next level the face of the given mesh it comes from.

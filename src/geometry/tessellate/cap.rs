@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use super::TessellateError;
 use crate::geometry::mesh;
 use crate::geometry::mesh::triangulate::triangulate;
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Vertex, VertexIndex};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Vertex, VertexIndex};
 
 /// A closed outline of a flat face: places in its plane and the points of the mesh that stand there.
 pub(super) struct CapLoop {
@@ -44,6 +44,7 @@ pub(super) fn add_cap(
             point: *point,
             normal: facing.normal,
             uv: if uv { DVec2::new(across, 1.0 - part.y) } else { DVec2::ZERO },
+            color: Color::WHITE,
             anchor: Anchor { source, u: place.x, v: place.y },
         });
     }

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::{Deviation, Tessellation};
 use crate::geometry::mesh;
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex};
 
 /// The box of `size` about `center`: 8 points, 6 faces with their own vertices, each face the whole texture.
 #[must_use]
@@ -26,6 +26,7 @@ pub fn cuboid(size: DVec3, center: DVec3, uv: bool) -> Tessellation {
                 point: PointIndex(point),
                 normal,
                 uv: if uv { place } else { DVec2::ZERO },
+                color: Color::WHITE,
                 anchor: Anchor { source: mesh::index(face), u: place.x, v: place.y },
             });
         }

@@ -12,7 +12,7 @@ use super::ring::{Row, RowKind, stitch};
 use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessellation};
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh;
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex};
 
 /// Closed outlines in the xy plane with holes, pushed from z = `bottom` to `bottom` + `height`.
 #[derive(Clone, Debug, PartialEq)]
@@ -169,6 +169,7 @@ fn wall(
                     } else {
                         DVec2::ZERO
                     },
+                    color: Color::WHITE,
                     anchor: Anchor { source: wall.source, u: station.t, v: shape.height * part },
                 });
             }

@@ -17,7 +17,7 @@ use super::round::{fewest_pieces, sagitta};
 use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessellation};
 use crate::geometry::mesh;
 use crate::geometry::mesh::platonic::Platonic;
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex};
 use crate::geometry::number::{acos, asin, atan2, sin};
 
 /// A ball of triangles about the origin.
@@ -229,7 +229,7 @@ impl Net {
 }
 
 fn vertex(point: u32, normal: DVec3, uv: DVec2) -> Vertex {
-    Vertex { point: PointIndex(point), normal, uv, anchor: Anchor::default() }
+    Vertex { point: PointIndex(point), normal, uv, color: Color::WHITE, anchor: Anchor::default() }
 }
 
 /// Texture coordinates by longitude and latitude, as on a turned ball. Triangles across the seam get vertices of

@@ -248,7 +248,7 @@ pub enum TessellateError {
 }
 
 /// A place for a person: no more digits than it takes to find it.
-fn told(place: DVec3) -> String {
+pub(crate) fn told(place: DVec3) -> String {
     let mut digits = 0;
     let mut size = place.abs().max_element();
     while size < 100.0 && digits < 12 {

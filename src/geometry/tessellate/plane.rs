@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::{Detail, Deviation, SurfaceDensity, TessellateError, Tessellation};
 use crate::geometry::mesh;
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex};
 
 /// A flat rectangle in the x, z plane about the origin that looks to +y.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ pub fn plane(shape: &FlatPlane, detail: &Detail) -> Result<Tessellation, Tessell
             mesh.points.push(DVec3::new(place.x, 0.0, place.y));
             let uv = if detail.uv { part } else { DVec2::ZERO };
             let anchor = Anchor { source: 0, u: part.x, v: part.y };
-            mesh.vertices.push(Vertex { point, normal: DVec3::Y, uv, anchor });
+            mesh.vertices.push(Vertex { point, normal: DVec3::Y, uv, color: Color::WHITE, anchor });
         }
     }
     let at = |row: u32, column: u32| VertexIndex(row * (columns + 1) + column);

@@ -23,7 +23,7 @@ use super::ring::{Row, RowKind, count, stitch};
 use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessellation};
 use crate::geometry::curve::{AnyCurve, Curve};
 use crate::geometry::mesh;
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex};
 use crate::geometry::number::{cos_degrees, floor_count, floor_large, sin_cos_degrees, size};
 
 /// A profile turned about the y axis: x of the profile is the radius. Angles in degrees, from +x toward -z.
@@ -446,6 +446,7 @@ impl<'a> Builder<'a> {
             point: PointIndex(point),
             normal: DVec3::new(normal.x * cos, normal.y, -normal.x * sin),
             uv: if self.detail.uv { DVec2::new(fraction, up) } else { DVec2::ZERO },
+            color: Color::WHITE,
             anchor: Anchor {
                 source: WALL,
                 u: self.shape.start + self.shape.angle * fraction,

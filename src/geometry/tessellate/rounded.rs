@@ -16,7 +16,7 @@ use glam::{DVec2, DVec3};
 use super::round::{fewest_pieces, sagitta};
 use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessellation};
 use crate::geometry::mesh;
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex};
 use crate::geometry::number::{cos_degrees, tan_degrees};
 
 /// A box about the origin whose edges and corners are rounded.
@@ -230,7 +230,13 @@ impl Made<'_> {
         }
         let normal = self.grid.direction(place);
         let uv = if self.uv { uv } else { DVec2::ZERO };
-        self.mesh.vertices.push(Vertex { point: PointIndex(point), normal, uv, anchor: Anchor::default() });
+        self.mesh.vertices.push(Vertex {
+            point: PointIndex(point),
+            normal,
+            uv,
+            color: Color::WHITE,
+            anchor: Anchor::default(),
+        });
         VertexIndex(mesh::index(self.mesh.vertices.len()) - 1)
     }
 }

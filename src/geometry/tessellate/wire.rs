@@ -3,7 +3,7 @@
 use super::discretize::{Density, discretize};
 use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError};
 use crate::geometry::curve::{AnyCurve, Curve as _};
-use crate::geometry::mesh::{Anchor, Wire, WirePoint, index};
+use crate::geometry::mesh::{Anchor, Color, Wire, WirePoint, index};
 
 /// Cuts curves into chains of segments, one strand of origin 0 for each; those that are closed return to their start.
 /// The points of polylines are kept as they are. Anchor source k is curve k. The bound is proved.
@@ -24,6 +24,7 @@ pub fn wire(curves: &[AnyCurve], detail: &Detail) -> Result<(Wire, Deviation), T
         let used = stations.len() - usize::from(curve.is_closed());
         let points = stations[..used].iter().map(|station| WirePoint {
             position: station.point,
+            color: Color::WHITE,
             anchor: Anchor { source, u: station.t, v: 0.0 },
         });
         made.push(points, curve.is_closed(), 0);

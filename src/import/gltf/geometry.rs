@@ -4,7 +4,7 @@ use glam::{DAffine3, DMat3, DMat4, DVec2, DVec3, Vec3};
 
 use super::{Data, GltfFault, GltfFile, Node, Part, open};
 use crate::geometry::mesh::polygon::NONE;
-use crate::geometry::mesh::{NormalMap, PolygonMesh, index};
+use crate::geometry::mesh::{Color, NormalMap, PolygonMesh, index};
 use crate::import::{ImportError, ImportOptions, Imported, MaterialLook, Note};
 
 /// Reads a file: the triangles of the scene that is shown, in its space, states by their weights at rest, skinned meshes as
@@ -60,6 +60,9 @@ fn finish(
     }
     if mesh.corner_normals.iter().all(|normal| *normal == NONE) {
         mesh.corner_normals.clear();
+    }
+    if mesh.colors.iter().all(|color| *color == Color::WHITE) {
+        (mesh.colors, mesh.corner_colors) = (Vec::new(), Vec::new());
     }
     mesh.weld(options.weld.unwrap_or(0.0));
     let mut notes: Vec<Note> = notes.into_iter().map(|message| Note { line: None, message }).collect();
@@ -229,6 +232,12 @@ impl Found {
         }
         let first = index(self.mesh.points.len());
         let (first_uv, first_normal) = (index(self.mesh.uvs.len()), index(self.mesh.normals.len()));
+        let first_color = index(self.mesh.colors.len());
+        if part.colors.is_empty() {
+            self.mesh.colors.push(Color::WHITE);
+        }
+        let shade = |color: &[f32; 4]| Color::held(color.map(f64::from));
+        self.mesh.colors.extend(part.colors.iter().map(shade));
         let mut mirrored = Vec::with_capacity(part.positions.len());
         for (vertex, position) in part.positions.iter().enumerate() {
             let map = stand.of(part, vertex, mesh)?;
@@ -260,6 +269,8 @@ impl Found {
                 if known { first_uv + corner } else { NONE }
             };
             self.mesh.corner_uvs.extend(corners.map(uv));
+            let color = |corner: u32| first_color + if part.colors.is_empty() { 0 } else { corner };
+            self.mesh.corner_colors.extend(corners.map(color));
             let mesh = &self.mesh;
             let normal = |corner: u32| {
                 let own = first_normal + corner;

@@ -2,7 +2,9 @@ use glam::{DVec2, DVec3};
 
 use super::super::{ImportError, ImportOptions, Imported};
 use super::{PlyFault, read};
+use crate::geometry::mesh::Color;
 use crate::geometry::mesh::polygon::NONE;
+use crate::geometry::number::srgb_to_linear;
 
 const TEXT: &str = "ply\nformat ascii 1.0\ncomment two faces\nelement vertex 5\nproperty float x\nproperty float y\nproperty double z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty uchar red\nproperty float s\nproperty float t\nelement other 1\nproperty list uchar int things\nelement face 2\nproperty uchar flags\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0 0 1 255 0 0\n1 0 0 0 0 1 255 1 0\n1 1 0 0 0 1 255 1 1\n0 1 0 0 0 1 255 0 1\n2 0.5 0 0 0 2 255 0.5 0.25\n3 7 8 9\n1 4 0 1 2 3\n1 3 1 4 2\n";
 
@@ -45,7 +47,8 @@ fn text_and_binary_of_both_orders_are_one_mesh() {
     assert_eq!(text.mesh.loop_ends, [4, 7]);
     assert_eq!(text.mesh.normals[4], DVec3::Z * 2.0);
     assert_eq!(text.mesh.uvs[4], DVec2::new(0.5, 0.75), "v counts from below");
-    assert_eq!(text.notes.len(), 1, "colors are left out: {:?}", text.notes);
+    assert_eq!(text.notes, []);
+    assert!(text.mesh.corner_colors.is_empty(), "red alone is no color");
     text.mesh.validate().expect("valid");
     for big in [false, true] {
         assert_eq!(model(&binary(big)), text, "big {big}");
@@ -116,4 +119,38 @@ fn faults_name_what_they_found() {
     let wide = "ply\nformat binary_little_endian 1.0\nelement nothing 4000000000\nend_header\n";
     let found = read(wide.as_bytes(), &ImportOptions::default());
     assert!(matches!(found, Err(ImportError::Ply(PlyFault::Truncated { .. }))));
+}
+
+/// A square of two triangles whose points and faces have properties of their own.
+fn square(points: &str, faces: &str, rows: [&str; 6]) -> String {
+    let [a, b, c, d, one, other] = rows;
+    format!(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n{points}element face 2\nproperty list uchar int vertex_index\n{faces}end_header\n0 0 0 {a}\n1 0 0 {b}\n1 1 0 {c}\n0 1 0 {d}\n3 0 1 2 {one}\n3 0 2 3 {other}\n"
+    )
+}
+
+#[test]
+fn colors_of_points_and_of_faces_are_those_of_screens() {
+    let bytes = "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n";
+    let text = square(bytes, "", ["255 0 51 255", "0 255 0 51", "10 20 30 255", "255 255 255 255", "", ""]);
+    let found = model(text.as_bytes());
+    assert_eq!(found.notes, []);
+    let light = |byte: u8| srgb_to_linear(f64::from(byte) / 255.0);
+    assert_eq!(found.mesh.colors[0], Color::held([1.0, 0.0, light(51), 1.0]));
+    assert_eq!(found.mesh.colors[1], Color::held([0.0, 1.0, 0.0, 0.2]), "opacity is no light");
+    assert_eq!(found.mesh.colors[2], Color::held([light(10), light(20), light(30), 1.0]));
+    assert_eq!(found.mesh.corner_colors, [0, 1, 2, 0, 2, 3]);
+    found.mesh.validate().expect("valid");
+
+    let floats = "property float red\nproperty float green\nproperty float blue\n";
+    let text = square("", floats, ["", "", "", "", "1 0.5 0", "0 0 2"]);
+    let found = model(text.as_bytes());
+    assert_eq!(found.mesh.colors[0], Color::held([1.0, srgb_to_linear(0.5), 0.0, 1.0]));
+    assert_eq!(found.mesh.colors[1], Color::held([0.0, 0.0, 1.0, 1.0]));
+    assert_eq!(found.mesh.corner_colors, [0, 0, 0, 1, 1, 1]);
+    assert_eq!(found.notes.len(), 1, "one color is held back: {:?}", found.notes);
+
+    let both = square(bytes, floats, ["1 2 3 4", "1 2 3 4", "1 2 3 4", "1 2 3 4", "0 0 0", "0 0 0"]);
+    let found = model(both.as_bytes());
+    assert_eq!((found.mesh.colors.len(), found.notes.len()), (4, 1), "{:?}", found.notes);
 }

@@ -4,7 +4,7 @@ use indexmap::IndexMap;
 
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::document::parameters::{FormulaOrValue, Parameters};
-use crate::language::expression::{Computed, FUNCTIONS, body};
+use crate::language::expression::{Computed, FUNCTIONS, SURFACE_VARIABLES, VARIABLES, body};
 use crate::language::source::{SourceMap, Span};
 use crate::language::spec::{ParameterValue, Sp, backtick, check_name};
 use crate::language::suggest::closest;
@@ -151,6 +151,9 @@ fn plain(text: &str) -> String {
 /// Names under which formulas stand.
 const TAKES_FORMULAS: [&str; 3] = ["formula", "implicit", "parametric"];
 
+/// The name under which formulas speak of normals too.
+const OF_SURFACES: &str = "vertex-color";
+
 /// Where a value stands in the document.
 #[derive(Clone, Copy)]
 struct Place {
@@ -158,6 +161,8 @@ struct Place {
     depth: usize,
     /// Whether an expression here may have variables: directly under one of these names, or in the table of that name.
     formula: Option<Level>,
+    /// The variables of such an expression.
+    variables: &'static [&'static str],
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -167,19 +172,25 @@ enum Level {
 }
 
 impl Place {
-    const TOP: Self = Self { depth: 1, formula: None };
+    const TOP: Self = Self { depth: 1, formula: None, variables: VARIABLES };
 
     /// The place of an entry of the table that stands here. The first two names are the family and the name of
     /// a definition, which may well be called so.
     fn entry(self, name: &str) -> Self {
-        let formula = if TAKES_FORMULAS.contains(&name) && self.depth >= 2 {
+        let surface = name == OF_SURFACES;
+        let formula = if (surface || TAKES_FORMULAS.contains(&name)) && self.depth >= 2 {
             Some(Level::Named)
         } else if self.formula == Some(Level::Named) {
             Some(Level::Inside)
         } else {
             None
         };
-        Self { depth: self.depth + 1, formula }
+        let inherited = if formula == Some(Level::Inside) { self.variables } else { VARIABLES };
+        Self {
+            depth: self.depth + 1,
+            formula,
+            variables: if surface { SURFACE_VARIABLES } else { inherited },
+        }
     }
 }
 
@@ -193,7 +204,10 @@ impl Tree<'_, '_> {
         match &mut value.data {
             Data::String(text) if body(text).is_some() => {
                 value.data = match place.formula {
-                    Some(_) => formula(self.parameters.formula(text, value.span), value.span),
+                    Some(_) => {
+                        let found = self.parameters.formula(text, value.span, place.variables);
+                        formula(found, value.span)
+                    }
                     None => data(self.parameters.expression(text, value.span), value.span),
                 };
             }

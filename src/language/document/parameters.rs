@@ -4,9 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use crate::language::diagnostic::{Code, Diagnostic};
-use crate::language::expression::{
-    Computed, Evaluator, Expression, Fault, Formula, Scope, VARIABLES, body, parse,
-};
+use crate::language::expression::{Computed, Evaluator, Expression, Fault, Formula, Scope, body, parse};
 use crate::language::source::{SourceMap, Span};
 use crate::language::suggest::closest;
 use crate::language::value::{Data, Table, Value};
@@ -142,14 +140,20 @@ impl<'d> Parameters<'d> {
     }
 
     /// The formula of a string that is an expression of variables, or its value where it has none.
-    pub(crate) fn formula(&mut self, text: &str, span: Span) -> Option<FormulaOrValue> {
+    pub(crate) fn formula(
+        &mut self,
+        text: &str,
+        span: Span,
+        variables: &'static [&'static str],
+    ) -> Option<FormulaOrValue> {
         let parsed = self.parsed(text, span)?;
-        if !VARIABLES.iter().any(|name| parsed.names(name)) {
+        if !variables.iter().any(|name| parsed.names(name)) {
             return self.evaluate(&parsed, text, span).map(FormulaOrValue::Value);
         }
-        let resolved = parsed.resolved(self).map_err(|fault| self.report(fault, text, span)).ok()?;
+        let resolved =
+            parsed.resolved(self, variables).map_err(|fault| self.report(fault, text, span)).ok()?;
         let offset = self.sources.snippet(span).find(text).and_then(|at| u32::try_from(at).ok());
-        let formula = Formula::new(resolved, text, span, offset);
+        let formula = Formula::new(resolved, text, (span, offset), variables);
         let named = formula.variables().iter().all(|name| self.written.get(name).is_some());
         let value = if named { Evaluator::new(self).value(&parsed).ok() } else { None };
         Some(FormulaOrValue::Formula(formula.with_value(value)))

@@ -9,7 +9,10 @@ use crate::language::expression::{Computed, Scope};
 use crate::language::source::Span;
 
 /// The names that can be variables of a formula. Where a formula stands they hide parameters of the same name.
-pub const VARIABLES: [&str; 6] = ["t", "u", "v", "x", "y", "z"];
+pub const VARIABLES: &[&str] = &["t", "u", "v", "x", "y", "z"];
+
+/// Those of a formula over the places of a surface and its normals there.
+pub const SURFACE_VARIABLES: &[&str] = &["t", "u", "v", "x", "y", "z", "nx", "ny", "nz"];
 
 /// An expression with variables, its parameters put in.
 #[derive(Clone, Debug)]
@@ -22,6 +25,8 @@ pub struct Formula {
     offset: Option<u32>,
     /// Its value when parameters have the names of all its variables, for a field that takes a number.
     value: Option<f64>,
+    /// The names that can be variables.
+    known: &'static [&'static str],
 }
 
 impl PartialEq for Formula {
@@ -31,9 +36,14 @@ impl PartialEq for Formula {
 }
 
 impl Formula {
-    /// A formula of a tree in which only variables are names.
-    pub(crate) fn new(tree: Expression, text: &str, span: Span, offset: Option<u32>) -> Self {
-        Self { tree: Arc::new(tree), text: Arc::from(text), span, offset, value: None }
+    /// A formula of a tree in which only variables, some of `known`, are names.
+    pub(crate) fn new(
+        tree: Expression,
+        text: &str,
+        (span, offset): (Span, Option<u32>),
+        known: &'static [&'static str],
+    ) -> Self {
+        Self { tree: Arc::new(tree), text: Arc::from(text), span, offset, value: None, known }
     }
 
     /// The same, with the value that it has as an expression of parameters.
@@ -83,10 +93,10 @@ impl Formula {
         self.text().get(range.clone()).unwrap_or_default()
     }
 
-    /// The variables that it has, in the order of [`VARIABLES`].
+    /// The variables that it has, in the order of those that it can have.
     #[must_use]
     pub fn variables(&self) -> Vec<&'static str> {
-        VARIABLES.into_iter().filter(|name| self.tree.names(name)).collect()
+        self.known.iter().copied().filter(|name| self.tree.names(name)).collect()
     }
 }
 
@@ -103,25 +113,25 @@ impl Expression {
         }
     }
 
-    /// The same with the values of a scope in place of all names but variables.
+    /// The same with the values of a scope in place of all names but variables, which are `known`.
     ///
     /// # Errors
     /// When a name has no value.
-    pub(crate) fn resolved(&self, scope: &mut impl Scope) -> Result<Self, Fault> {
+    pub(crate) fn resolved(&self, scope: &mut impl Scope, known: &[&str]) -> Result<Self, Fault> {
         scope.step(&self.range)?;
-        let one = |inner: &Self, scope: &mut _| inner.resolved(scope).map(Box::new);
+        let one = |inner: &Self, scope: &mut _| inner.resolved(scope, known).map(Box::new);
         let node = match &self.node {
-            Node::Name(name) if !VARIABLES.contains(&name.as_str()) => {
+            Node::Name(name) if !known.contains(&name.as_str()) => {
                 literal(&scope.look_up(name, self.range.clone())?, &self.range)
             }
             Node::Number(_) | Node::Boolean(_) | Node::Text(_) | Node::Name(_) => self.node.clone(),
-            Node::List(items) => Node::List(all(items, scope)?),
-            Node::Call(function, items) => Node::Call(function, all(items, scope)?),
+            Node::List(items) => Node::List(all(items, scope, known)?),
+            Node::Call(function, items) => Node::Call(function, all(items, scope, known)?),
             Node::Negate(inner) => Node::Negate(one(inner, scope)?),
             Node::Not(inner) => Node::Not(one(inner, scope)?),
             Node::Part(inner, index) => Node::Part(one(inner, scope)?, *index),
             Node::Binary(operator, sides) => {
-                let sides = [sides[0].resolved(scope)?, sides[1].resolved(scope)?];
+                let sides = [sides[0].resolved(scope, known)?, sides[1].resolved(scope, known)?];
                 Node::Binary(*operator, Box::new(sides))
             }
         };
@@ -129,8 +139,8 @@ impl Expression {
     }
 }
 
-fn all(items: &[Expression], scope: &mut impl Scope) -> Result<Vec<Expression>, Fault> {
-    items.iter().map(|item| item.resolved(scope)).collect()
+fn all(items: &[Expression], scope: &mut impl Scope, known: &[&str]) -> Result<Vec<Expression>, Fault> {
+    items.iter().map(|item| item.resolved(scope, known)).collect()
 }
 
 /// A value as it would be written.

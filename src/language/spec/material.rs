@@ -2,7 +2,7 @@
 
 use serde_json::{Value as Json, json};
 
-use crate::geometry::number::pow;
+use crate::geometry::number::srgb_to_linear;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::spec::check::Check;
 use crate::language::spec::construct::{choices, table};
@@ -194,7 +194,9 @@ fn parse_hex(text: &str) -> Option<Color> {
     let part = |index: usize| digits.get(2 * index..2 * index + 2).map(|pair| u8::from_str_radix(pair, 16));
     let byte = |index| part(index).and_then(Result::ok).map(|byte| f64::from(byte) / 255.0);
     let alpha = byte(3).unwrap_or(1.0);
-    Some(Color { linear: [linear(byte(0)?), linear(byte(1)?), linear(byte(2)?), alpha] })
+    Some(Color {
+        linear: [srgb_to_linear(byte(0)?), srgb_to_linear(byte(1)?), srgb_to_linear(byte(2)?), alpha],
+    })
 }
 
 fn hint_hex(report: Diagnostic, text: &str, span: crate::language::source::Span) -> Diagnostic {
@@ -208,9 +210,4 @@ fn hint_hex(report: Diagnostic, text: &str, span: crate::language::source::Span)
         _ => return report,
     };
     report.suggest(span, format!("\"#{full}\""), format!("write \"#{full}\""))
-}
-
-/// The sRGB transfer function (IEC 61966-2-1), from screen to light.
-fn linear(screen: f64) -> f64 {
-    if screen <= 0.040_45 { screen / 12.92 } else { pow((screen + 0.055) / 1.055, 2.4) }
 }

@@ -6,6 +6,7 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::check::Check;
 use crate::language::spec::construct::table;
+use crate::language::spec::material::Color;
 use crate::language::spec::polygon::Face;
 use crate::language::spec::reader::Reader;
 use crate::language::spec::spanned::Sp;
@@ -22,6 +23,8 @@ table! {
         uvs: Option<Sp<Vec<DVec2>>>;
         /// For each face, the indices of its corners in `uvs`; loops are written as in `faces`.
         face_uvs: Option<Sp<Vec<Sp<Face>>>>;
+        /// For each point its color, which multiplies that of the material.
+        colors: Option<Sp<Vec<Color>>>;
         /// For each face the number of its smoothing group: edges between faces of one group look smooth. 0 is flat.
         smoothing_groups: Option<Sp<Vec<u32>>>;
     }
@@ -35,7 +38,10 @@ impl Mesh {
             good &= self.check_face(index, face, reader);
         }
         let uvs = self.check_uvs(reader);
-        self.check_groups(reader) && uvs && good
+        let points = ("points", self.points.len());
+        let colors = (self.colors.as_ref())
+            .is_none_or(|colors| self.same_count("colors", colors.len(), colors.span, points, reader));
+        self.check_groups(reader) && uvs && colors && good
     }
 
     fn check_face(&self, index: usize, face: &Sp<Face>, reader: &mut Reader<'_>) -> bool {

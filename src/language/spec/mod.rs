@@ -71,6 +71,7 @@ mod svg;
 mod sweep;
 mod tangent;
 mod trimmed;
+mod vertex_color;
 mod whole;
 mod wire;
 
@@ -154,6 +155,7 @@ pub use svg::{Subpath, Svg, SvgArc, SvgPath, SvgSegment};
 pub use sweep::{Frame, ProfileStation, Sweep};
 pub use tangent::{Cardinal, CatmullRom, ChordPower, EndRule, Hermite, KochanekBartels, PerPoint};
 pub use trimmed::Trimmed;
+pub use vertex_color::{VertexColor, VertexColorFormulas};
 pub use whole::schema;
 pub use wire::Wire;
 

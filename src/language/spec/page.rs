@@ -82,6 +82,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
         "A shape is written `[shape.NAME]`, for the fields of every shape, and `[shape.NAME.KIND]`.",
         &[
             "shape",
+            "vertex-color",
             "box",
             "sphere",
             "cylinder",

@@ -37,6 +37,7 @@ use crate::language::spec::spanned::Sp;
 use crate::language::spec::subdivide::Subdivide;
 use crate::language::spec::sweep::Sweep;
 use crate::language::spec::trimmed::Trimmed;
+use crate::language::spec::vertex_color::VertexColor;
 use crate::language::spec::wire::Wire;
 use crate::language::value::Value;
 
@@ -65,6 +66,9 @@ table! {
         uv: Sp<Uv> = Uv::Auto;
         /// How often a texture repeats along u and v.
         uv_scale: Sp<DVec2> = DVec2::ONE => Check::nonzero();
+        /// Colors of its vertices, which multiply that of the material and those that its parts or its file have: `"#rrggbb"`,
+        /// linear `[r, g, b]`, or a table of formulas.
+        vertex_color: Option<Sp<VertexColor>>;
         /// The name of its material.
         material: Option<Sp<MaterialName>>;
         /// Factor of size: a number, or one for each axis. Applied before `rotate` and `at`.

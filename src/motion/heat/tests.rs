@@ -1,7 +1,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{HeatFault, heat_weights};
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Vertex, VertexIndex, index};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Vertex, VertexIndex, index};
 use crate::geometry::number::{exp, sin_cos_degrees};
 use crate::motion::{Bone, Joint, Limits, Skeleton};
 
@@ -27,6 +27,7 @@ fn mesh(points: Vec<DVec3>, triangles: &[[usize; 3]]) -> Mesh {
         point: PointIndex(point),
         normal: DVec3::Z,
         uv: DVec2::ZERO,
+        color: Color::WHITE,
         anchor: Anchor::default(),
     };
     let vertices = (0..index(points.len())).map(vertex).collect();

@@ -27,7 +27,7 @@ use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessel
 use crate::geometry::curve::{AnyCurve, Curve as _, Side};
 use crate::geometry::mesh;
 use crate::geometry::mesh::triangulate::triangulate;
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex};
 use crate::geometry::number::cos_degrees;
 use crate::geometry::planar::turn;
 use front::{Corner, Face, Front, Passed, Stretch, whole, widest};
@@ -409,7 +409,7 @@ impl Maker<'_> {
         let bits = [normal.x, normal.y, normal.z, uv.x, uv.y].map(f64::to_bits);
         let next = VertexIndex(mesh::index(self.mesh.vertices.len()));
         *self.known.entry((point.0, bits)).or_insert_with(|| {
-            self.mesh.vertices.push(Vertex { point, normal, uv, anchor });
+            self.mesh.vertices.push(Vertex { point, normal, uv, color: Color::WHITE, anchor });
             next
         })
     }

@@ -86,6 +86,7 @@ impl Chain<'_> {
     fn between(&self, a: &WirePoint, b: &WirePoint, part: f64) -> WirePoint {
         WirePoint {
             position: a.position.lerp(b.position, part),
+            color: a.color.lerp(b.color, part),
             anchor: anchor_between((a.anchor, b.anchor), part, self.periods),
         }
     }

@@ -141,6 +141,7 @@ pub(super) fn between(
         point,
         normal: one.normal.lerp(other.normal, part).try_normalize().unwrap_or(one.normal),
         uv: one.uv.lerp(other.uv, part),
+        color: one.color.lerp(other.color, part),
         anchor: anchor_between((one.anchor, other.anchor), part, periods),
     }
 }

@@ -6,7 +6,7 @@ use super::edges::ASIDE;
 use super::refine::Refiner;
 use super::skin::before;
 use super::{FieldSurface, is_on_edge};
-use crate::geometry::mesh::{self, Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+use crate::geometry::mesh::{self, Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex};
 use crate::geometry::number::cos_degrees;
 use crate::geometry::tessellate::Detail;
 
@@ -30,6 +30,7 @@ pub(super) fn dress(refiner: &Refiner<'_>, shape: &FieldSurface, detail: &Detail
                 point,
                 normal: sector.0,
                 uv: texture(shape, place),
+                color: Color::WHITE,
                 anchor: Anchor { source: 0, u: place.x, v: place.y },
             };
             mesh.vertices.push(vertex);

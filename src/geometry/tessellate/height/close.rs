@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::{Closing, HeightMap};
 use crate::geometry::mesh;
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Vertex, VertexIndex};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Vertex, VertexIndex};
 use crate::geometry::number::cos_degrees;
 use crate::geometry::tessellate::cap::{CapLoop, Facing, add_cap};
 use crate::geometry::tessellate::{Detail, TessellateError};
@@ -135,6 +135,7 @@ pub(super) fn add_strip(sheet: &mut Mesh, rim: &[PointIndex], under: &[PointInde
             point,
             normal: ends[end],
             uv: if detail.uv { DVec2::new(across[end], down) } else { DVec2::ZERO },
+            color: Color::WHITE,
             anchor: Anchor { source: WALL, u: across[end], v: down },
         });
         sheet.vertices.extend(vertices);

@@ -36,7 +36,7 @@ use glam::{DVec2, DVec3};
 use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessellation};
 use crate::geometry::map::{GridField, Interpolation};
 use crate::geometry::mesh;
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex};
 use chain::Side;
 use close::close;
 use delaunay::BORDER;
@@ -324,7 +324,7 @@ fn push(shape: &HeightMap, sheet: &mut Mesh, steps: [f64; 2], height: f64, uv: b
     let [right, bottom] = shape.field.extent();
     let uv = if uv { DVec2::new(steps[0] / right, steps[1] / bottom) } else { DVec2::ZERO };
     let anchor = Anchor { source: 0, u: steps[0], v: steps[1] };
-    sheet.vertices.push(Vertex { point, normal: shape.normal(steps), uv, anchor });
+    sheet.vertices.push(Vertex { point, normal: shape.normal(steps), uv, color: Color::WHITE, anchor });
 }
 
 /// Corners that turn counter-clockwise over columns and rows look down; this looks up.

@@ -20,7 +20,7 @@ use super::lattice::Lattice;
 use super::region::{Keep, Region, grain, rims};
 use super::round::Round;
 use super::{HeightMap, border_tolerance, of_refining, of_region, push, tessellation, up};
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Vertex, index};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Vertex, index};
 use crate::geometry::tessellate::{Detail, SurfaceDensity, TessellateError, Tessellation};
 
 /// Two height maps over one rectangle of the x, z plane: the front rises along y, the back falls below it. Both have
@@ -233,7 +233,7 @@ impl<'s> Body<'s> {
                     let uv = if self.detail.uv { part } else { glam::DVec2::ZERO };
                     *number = index(self.mesh.vertices.len());
                     let anchor = Anchor { source: 1, u: part.x, v: part.y };
-                    self.mesh.vertices.push(Vertex { point, normal, uv, anchor });
+                    self.mesh.vertices.push(Vertex { point, normal, uv, color: Color::WHITE, anchor });
                 }
                 *number
             });

@@ -9,7 +9,7 @@ use super::layout::{Block, Rim};
 use super::net::{Net, on_rim};
 use super::rows::{Corner, Free};
 use crate::geometry::mesh::polygon::newell;
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex, index};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex, index};
 use crate::geometry::surface::Surface;
 use crate::geometry::tessellate::cap::{CapLoop, Facing, add_cap};
 use crate::geometry::tessellate::{Detail, TessellateError};
@@ -200,6 +200,7 @@ fn vertex(block: &Block<'_>, corner: &Corner, normal: DVec3, uv: bool) -> Vertex
         point: PointIndex(corner.point),
         normal,
         uv: if uv { place } else { DVec2::ZERO },
+        color: Color::WHITE,
         anchor: Anchor { source: block.source, u: corner.u, v: corner.v },
     }
 }

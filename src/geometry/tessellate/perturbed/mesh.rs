@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 
 use super::{Cloth, PerturbedSkin};
-use crate::geometry::mesh::{self, Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+use crate::geometry::mesh::{self, Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex};
 use crate::geometry::number::cos_degrees;
 use crate::geometry::tessellate::Detail;
 
@@ -47,6 +47,7 @@ impl Cloth {
                             point: PointIndex(point),
                             normal: own.map_or_else(gradient, |sector| sector.sum).normalize_or(DVec3::Y),
                             uv: if detail.uv { DVec2::new(part.x, 1.0 - part.y) } else { DVec2::ZERO },
+                            color: Color::WHITE,
                             anchor: Anchor { source: 0, u: at.x, v: at.y },
                         });
                         mesh::index(made.vertices.len() - 1)

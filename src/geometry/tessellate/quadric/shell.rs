@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::geometry::mesh;
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex};
 
 /// Points and faces.
 #[derive(Debug, Default)]
@@ -59,6 +59,7 @@ impl Shell {
                     point: PointIndex(corner),
                     normal,
                     uv: DVec2::ZERO,
+                    color: Color::WHITE,
                     anchor: Anchor { source: face.source, u: place.x, v: place.y },
                 });
                 if !pointed {

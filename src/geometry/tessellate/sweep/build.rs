@@ -10,7 +10,7 @@ use super::Plan;
 use super::columns::{Columns, Plain};
 use crate::geometry::curve::Side;
 use crate::geometry::mesh;
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex};
 use crate::geometry::number::atan2;
 use crate::geometry::surface::{SectionPoint, Stand};
 
@@ -269,6 +269,7 @@ impl<'a> Builder<'a> {
                 point: grid.at(row, column),
                 normal: frame.side * normal.x + frame.up * normal.y,
                 uv: if uv { DVec2::new(columns.along[column], along) } else { DVec2::ZERO },
+                color: Color::WHITE,
                 anchor: Anchor { source, u: columns.u[column], v: stand.v },
             }
         };
@@ -311,6 +312,7 @@ impl<'a> Builder<'a> {
             point: grid.at(row, column),
             normal: self.normal(patch, row, |stand| columns.at(column, side, &stand.mix)),
             uv: if self.detail.uv { place } else { DVec2::ZERO },
+            color: Color::WHITE,
             anchor: self.anchor(patch, (columns.u[column], row)),
         }
     }
@@ -329,6 +331,7 @@ impl<'a> Builder<'a> {
             point: grid.at(row, column),
             normal: (normals[0] + normals[1]).normalize_or(normals[0]),
             uv: if self.detail.uv { place } else { DVec2::ZERO },
+            color: Color::WHITE,
             anchor: self.anchor(patch, (middle(&columns.u), row)),
         }
     }

@@ -22,7 +22,7 @@ use super::region::{Filled, NO_LINE, Outline, Place, Wanted, fill};
 use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessellation};
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::mesh::weld::weld_near;
-use crate::geometry::mesh::{self, Anchor, Mesh, PointIndex, Run, Vertex, VertexIndex};
+use crate::geometry::mesh::{self, Anchor, Color, Mesh, PointIndex, Run, Vertex, VertexIndex};
 use crate::geometry::number::{self, Bounds, floor_count};
 use crate::geometry::surface::{AnySurface, Surface as _};
 use cells::{Cells, Direction};
@@ -248,6 +248,7 @@ fn vertex(shape: &TrimmedSurface, place: DVec2, normal: DVec3, uv: bool) -> Vert
         point: PointIndex(0),
         normal,
         uv: if uv { DVec2::new(part.x, 1.0 - part.y) } else { DVec2::ZERO },
+        color: Color::WHITE,
         anchor: Anchor { source: 0, u: place.x, v: place.y },
     }
 }

@@ -8,7 +8,7 @@ use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIter
 use super::super::delaunay::Place;
 use super::sheet::Sheet;
 use super::{BasedMap, Layer};
-use crate::geometry::mesh::{Anchor, Mesh, PointIndex, Vertex, VertexIndex, index};
+use crate::geometry::mesh::{Anchor, Color, Mesh, PointIndex, Vertex, VertexIndex, index};
 use crate::geometry::number::cos_degrees;
 use crate::geometry::tessellate::cap::{CapLoop, Facing, add_cap, twice_area};
 use crate::geometry::tessellate::height::Closing;
@@ -150,7 +150,7 @@ fn vertex(
 ) -> Vertex {
     let [s, t] = map.parts(steps);
     let uv = if uv { DVec2::new(s, t) } else { DVec2::ZERO };
-    Vertex { point, normal, uv, anchor: Anchor { source, u: steps[0], v: steps[1] } }
+    Vertex { point, normal, uv, color: Color::WHITE, anchor: Anchor { source, u: steps[0], v: steps[1] } }
 }
 
 /// Gives the vertices at each pole the mean normal of the triangles around it, by their angles there.
@@ -248,6 +248,7 @@ fn add_walls(top: &Placed, under: &Placed, mesh: &mut Mesh, detail: &Detail) -> 
                 point,
                 normal: ends[end],
                 uv: if detail.uv { DVec2::new(across[end], down) } else { DVec2::ZERO },
+                color: Color::WHITE,
                 anchor: Anchor { source: WALL, u: across[end], v: down },
             }));
             let [p, q, q_under, p_under] = [0, 1, 2, 3].map(|corner| VertexIndex(base + corner));
