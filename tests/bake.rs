@@ -11,6 +11,7 @@ mod deformations;
 mod determinism;
 mod document;
 mod drawings;
+mod duplicates;
 mod fields;
 mod glb;
 mod heights;

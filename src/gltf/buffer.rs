@@ -6,6 +6,7 @@ use gltf::json::validation::{Checked, USize64};
 use gltf::json::{Accessor, Index, Root, Value, extensions};
 use serde_json::{Map, json};
 
+use super::duplicate::{Views, share};
 use crate::geometry::mesh;
 use crate::packing::{EXTENSION, encode_attributes, encode_sequence, encode_triangles};
 
@@ -14,6 +15,7 @@ pub(super) struct Binary {
     pub(super) bytes: Vec<u8>,
     /// Where views are compressed, the bytes that they stand for so far.
     plain: Option<usize>,
+    views: Views,
 }
 
 /// Elements of an accessor.
@@ -24,7 +26,7 @@ pub(super) struct Elements {
 }
 
 /// What stands in a view, and so how it is compressed.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Content {
     /// Pictures, which are compressed already.
     Picture,
@@ -42,7 +44,7 @@ pub(super) enum Content {
 
 impl Binary {
     pub(super) fn new(capacity: usize, compressed: bool) -> Self {
-        Self { bytes: Vec::with_capacity(capacity), plain: compressed.then_some(0) }
+        Self { bytes: Vec::with_capacity(capacity), plain: compressed.then_some(0), views: Views::default() }
     }
 
     /// Whether views are compressed.
@@ -56,7 +58,7 @@ impl Binary {
         self.bytes.len()
     }
 
-    /// Ends the view begun at `start`.
+    /// Ends the view begun at `start`; one like it that was written before stands for it.
     pub(super) fn view(
         &mut self,
         root: &mut Root,
@@ -65,6 +67,20 @@ impl Binary {
         content: Content,
     ) -> Index<View> {
         let length = self.bytes.len() - start;
+        let packing = self.plain.and_then(|_| packed(&self.bytes[start..], content));
+        // A view that compression makes longer stays as it is, unless a filter has been applied to it.
+        let filtered = matches!(content, Content::Directions | Content::Exponential { .. });
+        let packing = packing.filter(|(packed, _)| packed.len() < length || filtered);
+        if let Some((packed, _)) = &packing {
+            self.bytes.truncate(start);
+            self.bytes.extend_from_slice(packed);
+        }
+        let stored = (target, packing.is_some());
+        if let Some(known) = self.views.find((&self.bytes, start), content, stored) {
+            self.bytes.truncate(start);
+            share(&mut root.buffer_views[known.value()], content);
+            return known;
+        }
         let mut view = View {
             buffer: Index::new(0),
             byte_length: USize64::from(length),
@@ -75,26 +91,22 @@ impl Binary {
             extensions: None,
             extras: None,
         };
-        if let Some((packed, rest)) = self.plain.and_then(|_| packed(&self.bytes[start..], content)) {
-            // A view that compression makes longer stays as it is, unless a filter has been applied to it.
-            let filtered = matches!(content, Content::Directions | Content::Exponential { .. });
-            if packed.len() < length || filtered {
-                let before = self.plain.unwrap_or(0);
-                self.bytes.truncate(start);
-                self.bytes.extend_from_slice(&packed);
-                let mut own = Map::new();
-                own.insert("buffer".to_owned(), json!(0));
-                own.insert("byteOffset".to_owned(), json!(start));
-                own.insert("byteLength".to_owned(), json!(packed.len()));
-                own.extend(rest);
-                view.buffer = Index::new(1);
-                view.byte_offset = (before > 0).then(|| USize64::from(before));
-                let others = Map::from_iter([(EXTENSION.to_owned(), Value::Object(own))]);
-                view.extensions = Some(extensions::buffer::View { others });
-                self.plain = Some((before + length).next_multiple_of(4));
-            }
+        if let Some((packed, rest)) = packing {
+            let before = self.plain.unwrap_or(0);
+            let mut own = Map::new();
+            own.insert("buffer".to_owned(), json!(0));
+            own.insert("byteOffset".to_owned(), json!(start));
+            own.insert("byteLength".to_owned(), json!(packed.len()));
+            own.extend(rest);
+            view.buffer = Index::new(1);
+            view.byte_offset = (before > 0).then(|| USize64::from(before));
+            let others = Map::from_iter([(EXTENSION.to_owned(), Value::Object(own))]);
+            view.extensions = Some(extensions::buffer::View { others });
+            self.plain = Some((before + length).next_multiple_of(4));
         }
-        root.push(view)
+        let made = root.push(view);
+        self.views.add(start..self.bytes.len(), content, stored, made);
+        made
     }
 
     /// A view of vertex attributes written by `fill`, and its accessor; `stride` bytes from one to the next.

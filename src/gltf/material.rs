@@ -12,11 +12,19 @@ use gltf::json::{Index, Root};
 use super::buffer::{Binary, Content};
 use crate::geometry::mesh;
 use crate::geometry::number::single;
-use crate::scene::{AlphaMode, Filter, ImageKind, Material, Scene, Texture, Wrap};
+use crate::scene::{AlphaMode, Filter, ImageHandle, ImageKind, Material, Scene, Texture, Wrap};
 
-/// Writes the images; index k of the scene is index k of the file.
-pub(super) fn images(root: &mut Root, binary: &mut Binary, scene: &Scene) {
-    for image in &scene.images {
+/// Writes the images, equal ones once; for each of the scene its index in the file.
+pub(super) fn images(root: &mut Root, binary: &mut Binary, scene: &Scene) -> Vec<u32> {
+    let mut places: Vec<u32> = Vec::with_capacity(scene.images.len());
+    for (number, image) in scene.images.iter().enumerate() {
+        let before = &scene.images[..number];
+        if let Some(known) = before.iter().position(|one| one.kind == image.kind && one.bytes == image.bytes)
+        {
+            places.push(places[known]);
+            continue;
+        }
+        places.push(mesh::index(root.images.len()));
         let start = binary.start();
         binary.bytes.extend_from_slice(&image.bytes);
         let view = binary.view(root, start, None, Content::Picture);
@@ -33,11 +41,12 @@ pub(super) fn images(root: &mut Root, binary: &mut Binary, scene: &Scene) {
             extras: None,
         });
     }
+    places
 }
 
 /// Writes the materials; index k of the scene is index k of the file.
-pub(super) fn materials(root: &mut Root, scene: &Scene) {
-    let mut textures = Textures { seen: Vec::new(), samplers: Vec::new() };
+pub(super) fn materials(root: &mut Root, scene: &Scene, images: &[u32]) {
+    let mut textures = Textures { images, seen: Vec::new(), samplers: Vec::new() };
     for material in &scene.materials {
         let written = textures.material(root, material);
         root.push(written);
@@ -45,12 +54,14 @@ pub(super) fn materials(root: &mut Root, scene: &Scene) {
 }
 
 /// Textures and samplers written so far: equal ones are written once.
-struct Textures {
+struct Textures<'a> {
+    /// For each image of the scene that of the file.
+    images: &'a [u32],
     seen: Vec<Texture>,
     samplers: Vec<(Wrap, Filter)>,
 }
 
-impl Textures {
+impl Textures<'_> {
     fn material(&mut self, root: &mut Root, material: &Material) -> JsonMaterial {
         let strength = |value: f64| StrengthFactor(single(value));
         JsonMaterial {
@@ -105,6 +116,7 @@ impl Textures {
     }
 
     fn texture(&mut self, root: &mut Root, texture: Texture) -> Index<JsonTexture> {
+        let texture = Texture { image: ImageHandle(self.images[texture.image.0 as usize]), ..texture };
         if let Some(known) = self.seen.iter().position(|seen| *seen == texture) {
             return Index::new(mesh::index(known));
         }

@@ -9,6 +9,7 @@ mod buffer;
 mod carrier;
 mod collider;
 mod color;
+mod duplicate;
 mod lines;
 mod material;
 mod morph;

@@ -14,7 +14,7 @@ use super::buffer::{Binary, Content, Elements, at, index_accessors, index_width}
 use super::color::colors;
 use super::position::positions;
 use super::profile::Profile;
-use super::{carrier, collider, lines, material, morph, motion};
+use super::{carrier, collider, duplicate, lines, material, morph, motion};
 use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
 use crate::geometry::number::{floor_count, size};
@@ -66,7 +66,8 @@ pub struct WrittenGeometry {
     pub name: String,
     /// A mesh of the file that shows it.
     pub mesh: usize,
-    /// Bytes of its vertices and indices in the file, without materials.
+    /// Bytes that its vertices and indices add to the file, without materials; what it shares with a geometry before it is
+    /// counted there.
     pub bytes: u64,
     /// Distance from the exact shape before rounding.
     pub deviation: Deviation,
@@ -126,8 +127,8 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
             (triangles, lines, (writer.binary.bytes.len() - before) as u64)
         })
         .collect();
-    material::images(&mut writer.root, &mut writer.binary, scene);
-    material::materials(&mut writer.root, scene);
+    let images = material::images(&mut writer.root, &mut writer.binary, scene);
+    material::materials(&mut writer.root, scene, &images);
     for mesh in &scene.meshes {
         let (triangles, lines, _) = &shared[mesh.geometry];
         writer.mesh(checked, mesh, triangles.as_ref(), lines);
@@ -137,6 +138,7 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
     let bearers = carrier::bearers(scene, &carriers);
     motion::animations(&mut writer.root, &mut writer.binary, scene, &bearers);
     writer.nodes(checked, &carriers);
+    duplicate::merge_accessors(&mut writer.root);
     let animated = |animation: &crate::scene::Animation| WrittenAnimation {
         name: animation.name.clone(),
         bound: animation.bound,
@@ -282,8 +284,7 @@ impl Writer {
             };
             (!shared.targets.is_empty()).then(|| shared.targets.iter().map(one).collect())
         };
-        let primitive = |shared: &Shared, run: &mesh::Run, indices: &Index<Accessor>| {
-            let material = mesh.materials[run.origin as usize];
+        let primitive = |shared: &Shared, material: Option<usize>, indices: Index<Accessor>| {
             let worn = material.map(|index| &scene.materials[index]);
             let bumps = worn.is_some_and(|material| material.normal_texture.is_some());
             let mut attributes = BTreeMap::new();
@@ -306,16 +307,25 @@ impl Writer {
                 attributes,
                 extensions: None,
                 extras: None,
-                indices: Some(*indices),
+                indices: Some(indices),
                 material: material.map(|index| Index::new(mesh::index(index))),
                 mode: Valid::Valid(Mode::Triangles),
                 targets: targets(shared, bumps),
             }
         };
-        let triangles = shared.into_iter().flat_map(|shared| {
-            runs.iter().zip(&shared.indices).map(move |(run, indices)| primitive(shared, run, indices))
-        });
-        let primitives = triangles.chain(lines.iter().map(|lines| lines.primitive(mesh))).collect();
+        let worn: Vec<Option<usize>> = runs.iter().map(|run| mesh.materials[run.origin as usize]).collect();
+        let accessors = &mut self.root.accessors;
+        let mut triangles = Vec::new();
+        for (shared, range) in shared
+            .into_iter()
+            .flat_map(|shared| duplicate::neighbors(&worn).map(move |range| (shared, range)))
+        {
+            let own = &shared.indices[range.clone()];
+            let indices = if let [one] = own { *one } else { joined(accessors, own) };
+            triangles.push(primitive(shared, worn[range.start], indices));
+        }
+        let primitives =
+            triangles.into_iter().chain(lines.iter().map(|lines| lines.primitive(mesh))).collect();
         self.root.push(Mesh {
             extensions: None,
             extras: morph::names(geometry),
@@ -396,6 +406,14 @@ impl Writer {
         bytes.splice(0..0, head);
         Ok(bytes)
     }
+}
+
+/// One accessor to all elements of several that follow each other in their view.
+fn joined(accessors: &mut Vec<Accessor>, parts: &[Index<Accessor>]) -> Index<Accessor> {
+    let count = parts.iter().map(|part| accessors[part.value()].count.0).sum();
+    let first = accessors[parts[0].value()].clone();
+    accessors.push(Accessor { count: gltf::json::validation::USize64(count), ..first });
+    Index::new(mesh::index(accessors.len() - 1))
 }
 
 /// What stands in the extras of a node.

@@ -13,7 +13,7 @@ pub use collider::{Body, Collider, ColliderForm};
 pub use morph::MorphTarget;
 pub use motion::{Animation, Channel, Skin};
 
-pub use crate::model::{AlphaMode, Filter, Image, ImageKind, Material, Texture, Wrap};
+pub use crate::model::{AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, Texture, Wrap};
 
 use glam::{DQuat, DVec3};
 
