@@ -56,6 +56,7 @@ impl Builder<'_> {
             Curve::Path(path) => self.path(path),
             // Their parts are made where parts are asked for.
             Curve::Svg(_)
+            | Curve::Dxf(_)
             | Curve::Group(_)
             | Curve::Part(_)
             | Curve::Implicit(_)

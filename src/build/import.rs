@@ -7,7 +7,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::Builder;
 use crate::geometry::mesh;
 use crate::import::keyframes::Keyframes;
-use crate::import::{self, ImportError, ImportOptions, Imported, MaterialLook};
+use crate::import::{self, ImportError, ImportOptions, Imported, MaterialLook, Note};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::{FileError, Span, join};
 use crate::language::spec::{FilePath, Import, Sp, Up};
@@ -28,7 +28,7 @@ const NOTES: usize = 4;
 impl Builder<'_> {
     pub(super) fn import(&mut self, import: &Import, span: Span) -> Option<Recipe> {
         let imported = self.read_mesh(import)?;
-        self.tell_notes(import, &imported);
+        self.tell_notes(&import.file, &imported.notes);
         let materials = self.imported_materials(import, &imported);
         let mut mesh = imported.mesh;
         let up = import.up.map_or_else(|| default_up(&import.file), |up| up.value);
@@ -118,6 +118,8 @@ impl Builder<'_> {
             "stl" => import::stl::read(&bytes, &options),
             "obj" => import::obj::read(&bytes, &options, &mut open),
             "ply" => import::ply::read(&bytes, &options),
+            "3ds" => import::studio::read(&bytes, &options),
+            "dxf" => import::dxf::read(&bytes, &options),
             "md5mesh" => import::md5::mesh::read(&bytes, options.group.as_deref()).map(|found| {
                 let mut imported = found.imported;
                 if let Some(weld) = options.weld {
@@ -131,7 +133,8 @@ impl Builder<'_> {
         match read {
             Ok(imported) => Some(imported),
             Err(error) => {
-                self.refused(file, &error);
+                let known = import::recognize(&bytes).filter(|_| error.is_foreign());
+                self.refused(file, &known.map_or(error, ImportError::Foreign));
                 None
             }
         }
@@ -163,20 +166,18 @@ impl Builder<'_> {
                 } else {
                     format!("a .{extension} file")
                 },
-                "export it as glTF (.glb or .gltf), Wavefront OBJ (.obj), STL (.stl), PLY (.ply) or a model of Quake or Doom (.md2, .md3, .md5mesh)",
+                "export it as glTF (.glb or .gltf), Wavefront OBJ (.obj), STL (.stl), PLY (.ply) 3D Studio scene (.3ds) or drawing (.dxf)",
             ),
         };
         let message = format!("{} is {what}, which cannot be imported", file.value.written);
         let report = Diagnostic::error(Code::UnsupportedFormat, message)
-            .at(file.span, "not glTF, OBJ, STL, PLY, MD2, MD3 or MD5")
+            .at(file.span, "not glTF, OBJ, STL, PLY, 3DS, DXF, MD2, MD3 or MD5")
             .help(hint);
         self.report(report);
         None
     }
 
-    fn tell_notes(&mut self, import: &Import, imported: &Imported) {
-        let file = &import.file;
-        let notes = &imported.notes;
+    pub(super) fn tell_notes(&mut self, file: &Sp<FilePath>, notes: &[Note]) {
         if notes.is_empty() {
             return;
         }
@@ -248,7 +249,10 @@ impl Builder<'_> {
 
 /// OBJ, PLY and BVH files have y up by custom, the others z.
 pub(super) fn default_up(file: &Sp<FilePath>) -> Up {
-    if matches!(file.value.extension().as_str(), "stl" | "md2" | "md3" | "md5mesh" | "md5anim") {
+    if matches!(
+        file.value.extension().as_str(),
+        "stl" | "3ds" | "dxf" | "md2" | "md3" | "md5mesh" | "md5anim"
+    ) {
         Up::Z
     } else {
         Up::Y

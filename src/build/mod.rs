@@ -16,6 +16,7 @@ mod course;
 mod curve;
 mod deform;
 mod displace;
+mod dxf;
 mod extrude;
 mod field;
 mod formula;

@@ -63,6 +63,7 @@ impl Builder<'_> {
     fn parts(&mut self, curve: &Curve, span: Span) -> Option<Vec<AnyCurve>> {
         match curve {
             Curve::Svg(written) => Some(svg::svg(written)),
+            Curve::Dxf(written) => self.dxf(written, span),
             Curve::Group(group) => {
                 // All are built, so that no fault hides.
                 let parts: Vec<_> = group.of.iter().map(|one| self.parts_of(one)).collect();

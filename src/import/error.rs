@@ -3,11 +3,13 @@
 use thiserror::Error;
 
 use super::Foreign;
+use super::dxf::DxfFault;
 use super::gltf::GltfFault;
 use super::md2::Md2Fault;
 use super::md3::Md3Fault;
 use super::md5::Md5Fault;
 use super::ply::PlyFault;
+use super::studio::StudioFault;
 
 /// Why a file could not be imported. `Display` is a message for a diagnostic, [`ImportError::line`] its place,
 /// [`ImportError::hint`] what to do.
@@ -158,6 +160,12 @@ pub enum ImportError {
     /// A Doom 3 model that is none.
     #[error(transparent)]
     Md5(#[from] Md5Fault),
+    /// A drawing that is none.
+    #[error(transparent)]
+    Dxf(#[from] DxfFault),
+    /// A 3D Studio scene that is none.
+    #[error(transparent)]
+    Studio(#[from] StudioFault),
     /// A glTF file that is none.
     #[error(transparent)]
     Gltf(#[from] GltfFault),
@@ -186,9 +194,11 @@ impl ImportError {
             Self::BadNumber { text, .. } if text.contains(',') => {
                 "write decimals with a point, not a comma".to_owned()
             }
-            Self::BadNumber { .. } | Self::TooFewNumbers { .. } | Self::BadCorner { .. } | Self::Md5(_) => {
-                "the file is damaged here; export it again".to_owned()
-            }
+            Self::BadNumber { .. }
+            | Self::TooFewNumbers { .. }
+            | Self::BadCorner { .. }
+            | Self::Md5(_)
+            | Self::Dxf(_) => "the file is damaged here; export it again".to_owned(),
             Self::NotFinite { .. } | Self::FacetNotFinite { .. } => {
                 "the program that wrote the file divided by zero; repair the vertex there".to_owned()
             }
@@ -209,9 +219,12 @@ impl ImportError {
                 "files that it names stand beside it, inside the project".to_owned()
             }
             Self::Gltf(_) => "the file is damaged; the Khronos glTF validator tells more of it".to_owned(),
-            Self::Truncated { .. } | Self::TooShort { .. } | Self::Md2(_) | Self::Md3(_) | Self::Ply(_) => {
-                "the file is cut off; export it again".to_owned()
-            }
+            Self::Truncated { .. }
+            | Self::TooShort { .. }
+            | Self::Md2(_)
+            | Self::Md3(_)
+            | Self::Ply(_)
+            | Self::Studio(_) => "the file is cut off; export it again".to_owned(),
             Self::Unexpected { .. } => {
                 "the file is damaged here; export it again, as binary STL if you can".to_owned()
             }
@@ -224,7 +237,13 @@ impl ImportError {
     /// Whether the file does not begin as those of its format do.
     #[must_use]
     pub fn is_foreign(&self) -> bool {
-        matches!(self, Self::Md2(Md2Fault::NotMd2) | Self::Md3(Md3Fault::NotMd3))
+        matches!(
+            self,
+            Self::Md2(Md2Fault::NotMd2)
+                | Self::Md3(Md3Fault::NotMd3)
+                | Self::Dxf(DxfFault::NotDxf)
+                | Self::Studio(StudioFault::NotStudio)
+        )
     }
 
     /// The line it stands on, where there is one.
@@ -240,6 +259,7 @@ impl ImportError {
             | Self::IndexOutOfRange { line, .. }
             | Self::Unexpected { line, .. } => Some(line),
             Self::Md5(ref fault) => fault.line(),
+            Self::Dxf(ref fault) => fault.line(),
             _ => None,
         }
     }

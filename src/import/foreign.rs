@@ -17,7 +17,7 @@ const UNPACK: &str = "unpack it first";
 const SOLID: &str = "export an STL file from your CAD program, as fine as you need it";
 
 /// First bytes of each format.
-const MAGIC: [(&[u8], Foreign); 29] = [
+const MAGIC: [(&[u8], Foreign); 30] = [
     (b"BLENDER", Foreign { name: "a Blender file", hint: BLENDER }),
     (
         b"\x28\xb5\x2f\xfd",
@@ -44,6 +44,7 @@ const MAGIC: [(&[u8], Foreign); 29] = [
             hint: "let its name end with .md5mesh, or .md5anim for a motion",
         },
     ),
+    (b"AutoCAD Binary DXF", Foreign { name: "a drawing (DXF)", hint: "let its name end with .dxf" }),
     (b"ISO-10303-21", Foreign { name: "a STEP file", hint: SOLID }),
     (b"DBRep_DrawableShape", Foreign { name: "an OpenCascade shape (BREP)", hint: SOLID }),
     (b"PXR-USDC", Foreign { name: "a binary USD file", hint: MESH }),
@@ -69,7 +70,7 @@ pub fn recognize(bytes: &[u8]) -> Option<Foreign> {
                 let length = u32::from_le_bytes([length[0], length[1], length[2], length[3]]);
                 length >= 16 && length as usize <= bytes.len()
             });
-        is_3ds.then_some(Foreign { name: "a 3DS file", hint: OBJ })
+        is_3ds.then_some(Foreign { name: "a 3D Studio scene (3DS)", hint: "let its name end with .3ds" })
     })
 }
 
@@ -86,7 +87,7 @@ mod tests {
         }
         let mut studio = b"MM\x14\0\0\0\x02\0".to_vec();
         studio.extend([0; 12]);
-        assert_eq!(recognize(&studio).map(|foreign| foreign.name), Some("a 3DS file"));
+        assert_eq!(recognize(&studio).map(|foreign| foreign.name), Some("a 3D Studio scene (3DS)"));
     }
 
     #[test]

@@ -6,6 +6,7 @@
 
 pub mod bvh;
 mod bytes;
+pub mod dxf;
 mod error;
 mod foreign;
 pub mod gltf;
@@ -18,6 +19,7 @@ pub mod md5;
 pub mod obj;
 pub mod ply;
 pub mod stl;
+pub mod studio;
 
 use crate::geometry::mesh::PolygonMesh;
 

@@ -14,6 +14,7 @@ const CATERPILLAR: &[u8] = include_bytes!("../../specs/inputs/caterpillar.md2");
 /// Models of frames with tags, and of joints with a motion.
 const BEETLE: &[u8] = include_bytes!("../../specs/inputs/beetle.md3");
 const LAMP: &str = include_str!("../../specs/inputs/lamp.md5mesh");
+const PLATE: &str = include_str!("../../specs/inputs/plate.dxf");
 const BOW: &str = include_str!("../../specs/inputs/lamp-bow.md5anim");
 
 /// The case's own files, and broken ones that a text cannot hold.
@@ -35,6 +36,10 @@ fn with_broken(files: MemoryFiles) -> MemoryFiles {
         .with("caterpillar.md2", CATERPILLAR)
         .with("half.md2", &CATERPILLAR[..CATERPILLAR.len() / 2])
         .with("bird.md2", include_str!("../../specs/inputs/bird.obj"))
+        .with("plate.dxf", PLATE)
+        .with("half.dxf", &PLATE[..PLATE.find(" 40\n10").expect("an arc") + 4])
+        .with("bird.3ds", include_str!("../../specs/inputs/bird.obj"))
+        .with("half.3ds", b"MM\x20\0\0\0\x3d\x3d\x10\0\0\0".as_slice())
         .with("beetle.md3", BEETLE)
         .with("half.md3", &BEETLE[..BEETLE.len() / 2])
         .with("bird.md3", include_str!("../../specs/inputs/bird.obj"))

@@ -128,7 +128,8 @@ impl FaceNormals {
             }
             Smooth::Groups => {
                 let group = mesh.faces[a].smoothing;
-                group != 0 && group == mesh.faces[b].smoothing
+                let other = mesh.faces[b].smoothing;
+                if mesh.smoothing_masks { group & other != 0 } else { group != 0 && group == other }
             }
         }
     }

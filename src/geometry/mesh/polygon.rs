@@ -50,6 +50,8 @@ pub struct PolygonMesh {
     pub materials: Vec<String>,
     /// Whether [`Face::smoothing`] was given; otherwise an angle decides which edges are hard.
     pub has_smoothing: bool,
+    /// Whether [`Face::smoothing`] has a bit for each group, so that a face may be in several; else it is the number of one.
+    pub smoothing_masks: bool,
 }
 
 /// What is wrong with a [`PolygonMesh`].

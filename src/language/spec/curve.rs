@@ -10,6 +10,7 @@ use crate::language::spec::check::Check;
 use crate::language::spec::conic::{Conic, Hyperbola, Parabola, check_turn};
 use crate::language::spec::construct::{kinds, table};
 use crate::language::spec::cubic::{BetaSpline, Cubic};
+use crate::language::spec::dxf::Dxf;
 use crate::language::spec::formula::FormulaCurve;
 use crate::language::spec::implicit::Implicit;
 use crate::language::spec::operation::{Chamfer, Fillet, Offset, ProfileSet};
@@ -80,6 +81,8 @@ kinds! {
         Implicit(Implicit) = "implicit";
         /// The path of an SVG drawing.
         Svg(Svg) = "svg";
+        /// The curves of a drawing from a file.
+        Dxf(Dxf) = "dxf";
         /// Several curves as the parts of one.
         Group(CurveGroup) = "group";
         /// One part of a curve that has several.

@@ -26,18 +26,19 @@ pub struct FilePath {
 
 table! {
     /// A model from a file: glTF (.glb or .gltf, as its nodes place its meshes, skinned ones as they rest), Wavefront OBJ, STL, PLY,
-    /// a Doom 3 mesh (MD5), or a Quake model (MD2, MD3), whose frames become morphs of the shape where a node shows it, with a
-    /// name each, and whose sequences become clips. The tags of an MD3 file are nodes with their names in kebab-case, which
-    /// move with the frames and carry others as sockets do.
+    /// the faces of a drawing (DXF), the meshes of a 3D Studio scene (3DS) with its materials and smoothing groups, a Doom 3
+    /// mesh (MD5), or a Quake model (MD2, MD3), whose frames become morphs of the shape where a node shows it, with a name each,
+    /// and whose sequences become clips. The tags of an MD3 file are nodes with their names in kebab-case, which move with the
+    /// frames and carry others as sockets do.
     "import" pub Import {
         /// The file; the path is relative to this document and stays inside the project.
         file: Sp<FilePath>;
         /// Only this group or object of the file: of glTF this node with what stands below it, or this mesh; of MD3 a surface,
-        /// of MD5 the meshes of a material.
+        /// of MD5 the meshes of a material; of DXF a layer.
         group: Option<Sp<String>>;
         /// Factor from the file's unit to the document's: 0.001 for millimetres in a document in metres.
         scale: Sp<f64> = 1.0 => Check::above(0.0);
-        /// Which axis of the file points up: `"y"` when it is not written, for STL, MD2, MD3 and MD5 `"z"`.
+        /// Which axis of the file points up: `"y"` when it is not written, for STL, DXF, 3DS, MD2, MD3 and MD5 `"z"`.
         up: Option<Sp<Up>>;
         /// Points nearer than this, in the file's unit, are made one.
         weld: Option<Sp<f64>> => Check::at_least(0.0);

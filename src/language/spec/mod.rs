@@ -16,6 +16,7 @@ mod curve;
 mod deform;
 mod displace;
 mod document;
+mod dxf;
 mod field;
 mod formula;
 mod grid;
@@ -93,6 +94,7 @@ pub use curve::{Circle, Curve, Ellipse, Helix, Line, Polyline, Reverse, Transfor
 pub use deform::{Along, Bend, CoordinateAxis, Taper, Twist};
 pub use displace::{Displace, DisplaceProjection};
 pub use document::{Asset, Definition, Output, OutputProfile, Spec, Unit};
+pub use dxf::Dxf;
 pub use field::{
     BumpField, FallOff, Field, FieldDefinition, FieldFormula, FieldJoin, FieldOptions, FieldQuadric,
     FieldSum, HalfSpaceField, ImplicitShape, JoinMethod, PerturbedField, SkeletonElement, SkeletonField,

@@ -46,6 +46,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
             "arc segment",
             "implicit",
             "svg",
+            "dxf",
             "curve group",
             "part",
             "offset",
