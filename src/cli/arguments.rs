@@ -76,6 +76,8 @@ pub(crate) enum Command {
     Render(Render),
     /// Bake a document on every save, and show it in a page
     Watch(Watch),
+    /// Serve an editor: errors while you type, completion, hover, names (Language Server Protocol)
+    Lsp,
     /// Print points and derivatives of a curve or a surface as JSON
     Sample(Sample),
     /// Print the JSON Schema of documents, for editors

@@ -104,12 +104,17 @@ fn formatted(bytes: &[u8], shown: &str, printer: &Printer) -> Result<String, Out
         printer.diagnostics(&Diagnostics::new(found, Arc::new(sources)));
         return Err(Outcome::Errors);
     }
+    let Some(after) = meaning_kept(text) else {
+        printer.failure(&format!("{shown}: Kiln failed inside; please report this document as a bug"), None);
+        return Err(Outcome::Errors);
+    };
+    Ok(after)
+}
+
+/// A text, formatted; `None` where it is not TOML, or would mean something else.
+pub(super) fn meaning_kept(text: &str) -> Option<String> {
     let after = format(text);
     // As texts: what is not a number equals itself.
     let meaning = |text: &str| toml::from_str::<toml::Table>(text).map(|table| format!("{table:?}")).ok();
-    if meaning(text) != meaning(&after) || format(&after) != after {
-        printer.failure(&format!("{shown}: Kiln failed inside; please report this document as a bug"), None);
-        return Err(Outcome::Errors);
-    }
-    Ok(after)
+    (meaning(text)? == meaning(&after)? && format(&after) == after).then_some(after)
 }

@@ -14,6 +14,7 @@ mod format;
 mod gallery;
 mod html;
 mod inspect;
+mod lsp;
 mod output;
 mod plan;
 mod project;
@@ -85,6 +86,7 @@ pub fn run() -> ExitCode {
         Command::New(new) => starter::run(&new, &printer),
         Command::Diff(diff) => diff::run(&diff, &printer),
         Command::Gallery(gallery) => gallery::run(&gallery, &printer),
+        Command::Lsp => lsp::run(&printer),
         Command::Inspect(inspect) => inspect::run(&inspect, &printer),
         Command::Cache(command) => cache::run(&command, &printer),
         Command::Completions(completions) => describe::completions(&completions),
