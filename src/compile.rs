@@ -2,6 +2,7 @@
 
 mod assertion;
 mod collider;
+mod engine;
 mod file;
 mod lod;
 mod motion;
@@ -170,6 +171,13 @@ fn profile_of(name: OutputProfile) -> Profile {
         OutputProfile::Core => Profile::Core,
         OutputProfile::Quantized => Profile::Quantized,
         OutputProfile::Web => Profile::Web,
+        OutputProfile::Bevy => Profile::Bevy,
+        OutputProfile::Godot => Profile::Godot,
+        OutputProfile::Unreal => Profile::Unreal,
+        OutputProfile::Unity => Profile::Unity,
+        OutputProfile::Three => Profile::Three,
+        OutputProfile::Babylon => Profile::Babylon,
+        OutputProfile::Blender => Profile::Blender,
     }
 }
 
@@ -241,9 +249,9 @@ impl Made<'_> {
         let Self { built, spec, .. } = *self;
         let Surfaces { realized: Realized { mut scene, mut shapes, .. }, share } = surfaces;
         let (rounding, order) = match profile {
-            Profile::Core => (Rounding::Single, Order::Drawing),
-            Profile::Quantized => (Rounding::Fine(share), Order::Drawing),
-            Profile::Web => (Rounding::Coarse(share), Order::Packing),
+            profile if profile.is_compressed() => (Rounding::Coarse(share), Order::Packing),
+            profile if profile.is_quantized() => (Rounding::Fine(share), Order::Drawing),
+            _ => (Rounding::Single, Order::Drawing),
         };
         if let Err(coarse) = optimize::run(&mut scene, rounding, order) {
             warnings.push(too_coarse(profile, &coarse, spec));
@@ -254,8 +262,9 @@ impl Made<'_> {
         let coarser = realize::Options { coarser: 1.0 - share, ..realize::Options::default() };
         let colliders = realize::colliders(&built.model, &coarser, &shapes, &scene);
         scene.colliders = colliders.map_err(|errors| refusals(built, errors))?;
-        collider::hold(&mut scene, spec.output.colliders);
-        let scenes = lod::files(scene, spec.lod.as_ref().map(|lod| &lod.value));
+        collider::hold(&mut scene, engine::collider_form(profile, spec));
+        warnings.extend(engine::unread(profile, spec));
+        let scenes = lod::files(scene, engine::level_form(profile, spec));
         let file =
             |(level, scene)| self.file(scene, &shapes, (profile, level), std::mem::take(&mut warnings));
         scenes.into_iter().enumerate().map(file).collect()

@@ -12,6 +12,7 @@ mod determinism;
 mod document;
 mod drawings;
 mod duplicates;
+mod engines;
 mod fields;
 mod glb;
 mod heights;

@@ -56,6 +56,13 @@ PROFILES = {
     "core": [],
     "quantized": ["KHR_mesh_quantization"],
     "web": ["KHR_mesh_quantization", "EXT_meshopt_compression"],
+    "bevy": [],
+    "godot": [],
+    "unreal": [],
+    "unity": ["KHR_mesh_quantization"],
+    "three": ["KHR_mesh_quantization"],
+    "babylon": ["KHR_mesh_quantization"],
+    "blender": [],
 }
 EXPECTED = {"web": ("UNSUPPORTED_EXTENSION at /extensionsUsed", "UNUSED_OBJECT at /buffers/0:")}
 # The validator does not know the extension of levels of detail either, nor that it uses nodes.
@@ -366,7 +373,7 @@ def demand(asset: str, at: tuple[str, str], tool: str, found: Any, measured: Fac
     wanted = DEMANDS[fact]
     if fact == "required-extensions":
         wanted = PROFILES.get(profile, [])
-    elif fact == "largest-normal-error" and profile != "core":
+    elif fact == "largest-normal-error" and PROFILES.get(profile):
         # A state of a morph adds two vectors that are rounded each.
         wanted = BYTE_DIRECTION * (2 if ".morphs." in place else 1)
     if isinstance(wanted, float):

@@ -1,6 +1,7 @@
 //! Names of the files of an asset.
 
 use super::Options;
+use super::engine::level_form;
 use crate::gltf::Profile;
 use crate::language::Document;
 use crate::language::diagnostic::{Code, Diagnostic};
@@ -24,9 +25,10 @@ fn level_name(level: usize) -> String {
 pub(super) fn same_file(document: &Document, spec: &Spec, profiles: &[Profile]) -> Option<Diagnostic> {
     let variants = document.variants();
     let among = |name: &str| variants.iter().any(|variant| variant == name);
-    let profiles = profiles.iter().filter(|profile| **profile != Profile::Core).map(|profile| profile.name());
-    let same = profiles.map(|name| ("profile", name.to_owned())).find(|(_, name)| among(name));
-    let in_files = spec.lod.as_ref().is_some_and(|lod| lod.value.form == LodForm::Files);
+    let named = profiles.iter().filter(|profile| **profile != Profile::Core).map(|profile| profile.name());
+    let same = named.map(|name| ("profile", name.to_owned())).find(|(_, name)| among(name));
+    let in_files =
+        spec.lod.is_some() && profiles.iter().any(|profile| level_form(*profile, spec) == LodForm::Files);
     let levels = (1..=8).map(level_name).filter(|_| in_files);
     let (kind, same) = same.or_else(|| levels.map(|name| ("level", name)).find(|(_, name)| among(name)))?;
     let message = format!("the variant `{same}` and the {kind} `{same}` would be written to one file");

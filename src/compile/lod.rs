@@ -93,10 +93,6 @@ pub(super) fn add(made: &Made<'_>, surfaces: &mut Surfaces) -> Result<Vec<Diagno
         fewer(built, shape, finest, (chains[index].len(), asked[index]))
     });
     let said = said.collect();
-    realized.scene.level_form = match lod.value.form {
-        LodForm::Nodes => LevelForm::Nodes,
-        LodForm::MsftLod | LodForm::Files => LevelForm::Extension,
-    };
     for (index, chain) in chains.into_iter().enumerate() {
         for kept in chain {
             realized.shapes.push(realized.shapes[index]);
@@ -285,11 +281,12 @@ fn coverage(finest: &Geometry, level: &Geometry) -> f64 {
 }
 
 /// The scene of each file: levels in files of their own where that is asked for, else all in one.
-pub(super) fn files(mut scene: Scene, lod: Option<&Lod>) -> Vec<Scene> {
-    if lod.is_none_or(|lod| lod.form != LodForm::Files) {
-        if scene.level_form == LevelForm::Nodes {
-            name_levels(&mut scene);
-        }
+pub(super) fn files(mut scene: Scene, form: LodForm) -> Vec<Scene> {
+    if form == LodForm::Nodes {
+        scene.level_form = LevelForm::Nodes;
+        name_levels(&mut scene);
+    }
+    if form != LodForm::Files {
         return vec![scene];
     }
     let count = scene.meshes.iter().map(|mesh| mesh.levels.len()).max().unwrap_or(0);

@@ -430,6 +430,13 @@ codes! {
     ColliderPlace = "K0994";
     /// a collider without volume
     FlatCollider = "K0995";
+
+    /// levels of detail that an engine does not read
+    EngineLevels = "K1050";
+    /// colliders that an engine does not read
+    EngineColliders = "K1051";
+    /// a name that an engine acts upon
+    EngineName = "K1052";
 }
 
 impl serde::Serialize for Code {

@@ -534,4 +534,13 @@ examples! {
     FlatCollider: "A body that things bounce off encloses a volume. A flat shape has none: a thin box in its place serves better.",
         "[shape.a.disk]\nradius = 1\n[collider.c]\nshape = \"a\"" =>
         "[shape.a.cylinder]\nradius = 1\nheight = 0.02\n[collider.c]\nshape = \"a\"";
+    EngineLevels: "A profile for an engine has levels of detail in the form that its loader takes: by `MSFT_lod` for Babylon.js and, with a plugin, three.js; in files of their own for the others, whose loaders show all nodes of a scene and know no levels.",
+        "[output]\nprofiles = [\"bevy\"]\n[lod]\nlevels = 2\nform = \"msft-lod\"\n[shape.a.sphere]\nradius = 1" =>
+        "[output]\nprofiles = [\"bevy\"]\n[lod]\nlevels = 2\n[shape.a.sphere]\nradius = 1";
+    EngineColliders: "Engines make bodies of what their loaders know: Godot of names and of the `OMI` extensions, Unreal of names, games in the others of numbers in `extras`.",
+        "[output]\nprofiles = [\"unreal\"]\ncolliders = \"omi\"\n[shape.a.sphere]\nradius = 1\n[collider.c]\nshape = \"a\"" =>
+        "[output]\nprofiles = [\"unreal\"]\n[shape.a.sphere]\nradius = 1\n[collider.c]\nshape = \"a\"";
+    EngineName: "Godot's importer acts upon the ends of names: a node whose name ends in `-col` gets a body, one in `-noimp` is left out, a motion that begins or ends with `loop` is repeated. In the profile `godot` a name that happens to end so is told.",
+        "[output]\nprofiles = [\"godot\"]\n[shape.front-wheel.sphere]\nradius = 1" =>
+        "[output]\nprofiles = [\"godot\"]\n[shape.wheel-front.sphere]\nradius = 1";
 }

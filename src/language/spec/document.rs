@@ -110,6 +110,20 @@ choices! {
         /// `NAME.web.glb`: as quantized, on the coarsest grid that the tolerance allows, and compressed. Needs
         /// `KHR_mesh_quantization` and `EXT_meshopt_compression`.
         Web = "web";
+        /// `NAME.bevy.glb`: as core. Levels of detail in files of their own, each a scene for a `VisibilityRange`; colliders in `extras`.
+        Bevy = "bevy";
+        /// `NAME.godot.glb`: as core. Levels in files of their own, colliders by names. A warning tells names that Godot acts upon.
+        Godot = "godot";
+        /// `NAME.unreal.glb`: as core. Levels in files of their own, colliders by names.
+        Unreal = "unreal";
+        /// `NAME.unity.glb`: as quantized. Levels in files of their own, colliders in `extras`.
+        Unity = "unity";
+        /// `NAME.three.glb`: as quantized. Levels by `MSFT_lod`, for which three.js has a plugin; colliders in `extras`.
+        Three = "three";
+        /// `NAME.babylon.glb`: as quantized. Levels by `MSFT_lod`, colliders in `extras`.
+        Babylon = "babylon";
+        /// `NAME.blender.glb`: as core. Levels in files of their own, colliders in `extras`.
+        Blender = "blender";
     }
 }
 
@@ -118,8 +132,9 @@ table! {
     "output" pub Output {
         /// One file for each of them; `["core"]` when it is not written.
         profiles: Option<Sp<Vec<Sp<OutputProfile>>>> => Check::items(1);
-        /// How colliders stand in files.
-        colliders: ColliderForm = ColliderForm::Extras;
+        /// How colliders stand in files. When it is not written: "godot" and "unreal" in the profiles of these names, else
+        /// "extras".
+        colliders: Option<Sp<ColliderForm>>;
     }
 }
 

@@ -22,8 +22,8 @@ table! {
         /// Instead of their number the tolerances of the coarser levels, each greater than the one before, in the document's
         /// unit. A shape whose own tolerance is greater keeps that.
         tolerances: Option<Sp<Vec<f64>>> => Check::above(0.0);
-        /// How they stand in files.
-        form: LodForm = LodForm::MsftLod;
+        /// How they stand in files. When it is not written: "msft-lod", and "files" in profiles of engines that do not read that.
+        form: Option<Sp<LodForm>>;
     }
     checked check
 }

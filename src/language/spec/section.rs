@@ -6,7 +6,6 @@ use crate::language::diagnostic::{Code, Diagnostic, Severity};
 use crate::language::source::{SourceMap, Span};
 use crate::language::spec::assertion::read_assertions;
 use crate::language::spec::check::Check;
-use crate::language::spec::collider::ColliderForm;
 use crate::language::spec::curve::Curve;
 use crate::language::spec::document::{Asset, Definition, Output, Spec, Unit};
 use crate::language::spec::field::Field;
@@ -94,7 +93,7 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
     let asserts = table.get("assert").map(|value| read_assertions(value, &mut reader)).unwrap_or_default();
     let roots = resolve(&Names::of(table), limits.recursion, &mut reader);
     let asset = asset.flatten().unwrap_or(Asset { name: None, description: None });
-    let output = output.flatten().unwrap_or(Output { profiles: None, colliders: ColliderForm::Extras });
+    let output = output.flatten().unwrap_or(Output { profiles: None, colliders: None });
     let spec = Spec {
         unit,
         up,

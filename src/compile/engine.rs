@@ -1,0 +1,158 @@
+//! What engines read of a file: the forms that a profile takes where the document does not say, and what is told where an
+//! engine cannot take what the document asks for.
+//!
+//! Sources: Godot Engine documentation, Node type customization using name suffixes, 4.5; the loaders' own sources, 2026.
+
+use crate::gltf::Profile;
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::Span;
+use crate::language::spec::{ColliderForm, LodForm, Spec};
+
+/// How levels of detail stand in the files of a profile: as the document says, else by the extension where that is read or the
+/// file is for everyone, and in files of their own for engines that take one level a file.
+pub(super) fn level_form(profile: Profile, spec: &Spec) -> LodForm {
+    let Some(lod) = &spec.lod else { return LodForm::MsftLod };
+    let own = match profile.engine() {
+        None => LodForm::MsftLod,
+        Some(_) if reads_levels(profile, LodForm::MsftLod) => LodForm::MsftLod,
+        Some(_) => LodForm::Files,
+    };
+    lod.value.form.as_ref().map_or(own, |form| form.value)
+}
+
+/// How colliders stand in the files of a profile: as the document says, else as the engine reads them.
+pub(super) fn collider_form(profile: Profile, spec: &Spec) -> ColliderForm {
+    let own = match profile {
+        Profile::Godot => ColliderForm::Godot,
+        Profile::Unreal => ColliderForm::Unreal,
+        _ => ColliderForm::Extras,
+    };
+    spec.output.colliders.as_ref().map_or(own, |form| form.value)
+}
+
+/// Whether an engine shows one level at a time of those in such a form. `three.js` does so with a plugin.
+fn reads_levels(profile: Profile, form: LodForm) -> bool {
+    match form {
+        LodForm::Files => true,
+        LodForm::MsftLod => {
+            profile.engine().is_none() || matches!(profile, Profile::Three | Profile::Babylon)
+        }
+        LodForm::Nodes => profile.engine().is_none(),
+    }
+}
+
+fn reads_colliders(profile: Profile, form: ColliderForm) -> bool {
+    match form {
+        ColliderForm::Extras => !matches!(profile, Profile::Godot | Profile::Unreal),
+        ColliderForm::Omi => profile.engine().is_none() || profile == Profile::Godot,
+        ColliderForm::Godot => profile.engine().is_none() || profile == Profile::Godot,
+        ColliderForm::Unreal => profile.engine().is_none() || profile == Profile::Unreal,
+    }
+}
+
+/// What the engine of a profile will not take as the document means it.
+pub(super) fn unread(profile: Profile, spec: &Spec) -> Vec<Diagnostic> {
+    let Some(engine) = profile.engine() else { return Vec::new() };
+    let mut found = Vec::new();
+    if let Some(form) = spec.lod.as_ref().and_then(|lod| lod.value.form.as_ref())
+        && !reads_levels(profile, form.value)
+    {
+        let shown = match form.value {
+            LodForm::Nodes => "shows all of them at once",
+            _ => "shows the finest alone",
+        };
+        let message =
+            format!("{engine} reads no levels of detail of the form \"{}\": it {shown}", form.text());
+        found.push(
+            Diagnostic::warning(Code::EngineLevels, message)
+                .at(form.span, "this form")
+                .help("leave `form` out: each profile then has the form that its engine takes"),
+        );
+    }
+    if let Some(form) = &spec.output.colliders
+        && !spec.colliders.is_empty()
+        && !reads_colliders(profile, form.value)
+    {
+        let message = format!("{engine} makes no bodies of colliders of the form \"{}\"", form.text());
+        found.push(
+            Diagnostic::warning(Code::EngineColliders, message)
+                .at(form.span, "this form")
+                .help("leave `colliders` out: each profile then has the form that its engine takes"),
+        );
+    }
+    if profile == Profile::Godot {
+        found.extend(changed_by_godot(spec));
+    }
+    found
+}
+
+/// Ends of names by which Godot makes something else of a node.
+const OF_NODES: [&str; 11] = [
+    "noimp",
+    "col",
+    "convcol",
+    "colonly",
+    "convcolonly",
+    "navmesh",
+    "vehicle",
+    "wheel",
+    "rigid",
+    "occ",
+    "occonly",
+];
+
+/// Ends of names by which Godot changes a material.
+const OF_MATERIALS: [&str; 2] = ["vcol", "alpha"];
+
+/// First and last words of names of motions that Godot repeats.
+const OF_CLIPS: [&str; 2] = ["loop", "cycle"];
+
+/// The end of a name that Godot acts upon; digits after it do not count.
+fn suffix(name: &str, of: &'static [&'static str]) -> Option<&'static str> {
+    let (_, last) = name
+        .trim_end_matches(|letter: char| letter.is_ascii_digit())
+        .trim_end_matches('-')
+        .rsplit_once('-')?;
+    of.iter().copied().find(|suffix| *suffix == last)
+}
+
+/// Names by which Godot does something to what they name.
+fn changed_by_godot(spec: &Spec) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    let mut tell = |kind: &str, name: &str, span: Span, what: String| {
+        let message = format!("Godot {what} {kind} `{name}` for the end of its name");
+        found.push(
+            Diagnostic::warning(Code::EngineName, message)
+                .at(span, "this name")
+                .help("give it another name, or import the file without name suffixes"),
+        );
+    };
+    let done = |suffix: &str| match suffix {
+        "noimp" => "leaves out".to_owned(),
+        other => format!("makes something else (\"-{other}\") of"),
+    };
+    let shown = spec.roots.iter().filter_map(|name| spec.shapes.get_key_value(name.as_str()));
+    for (name, span) in spec
+        .nodes
+        .iter()
+        .map(|(name, node)| (name, node.name.span))
+        .chain(shown.filter(|_| spec.nodes.is_empty()).map(|(name, shape)| (name, shape.name.span)))
+    {
+        if let Some(suffix) = suffix(name, &OF_NODES) {
+            tell("node", name, span, done(suffix));
+        }
+    }
+    for (name, material) in &spec.materials {
+        if let Some(suffix) = suffix(name, &OF_MATERIALS) {
+            tell("material", name, material.name.span, done(suffix));
+        }
+    }
+    for (name, clip) in &spec.clips {
+        let words: Vec<&str> = name.split('-').collect();
+        let named = OF_CLIPS.iter().any(|word| words.first() == Some(word) || words.last() == Some(word));
+        if named && !clip.value.r#loop.value {
+            tell("clip", name, clip.name.span, "repeats".to_owned());
+        }
+    }
+    found
+}
