@@ -16,7 +16,7 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{
     FallOff, Field as Kind, FieldDefinition, FieldJoin, FieldReference, FieldSum, ImplicitShape, JoinMethod,
-    PerturbedField, SkeletonElement, SkeletonField, Sp,
+    PerturbedField, SkeletonElement, SkeletonField, Sp, Spec,
 };
 use crate::model::{MaterialHandle, Recipe};
 
@@ -25,6 +25,7 @@ impl Builder<'_> {
     pub(super) fn implicit_shape(&mut self, written: &ImplicitShape, span: Span) -> Option<Recipe> {
         let field = self.field_of(&written.field)?;
         let materials = self.element_materials(&written.field)?;
+        let colors = self.element_colors(&written.field);
         let level = written.level.value;
         let field = if level == 0.0 {
             field
@@ -53,7 +54,7 @@ impl Builder<'_> {
             return None;
         }
         let surface = FieldSurface { field, within, least: written.search.map(|size| size.value) };
-        Some(Recipe::Implicit { surface: Box::new(surface), materials })
+        Some(Recipe::Implicit { surface: Box::new(surface), materials, colors })
     }
 
     /// The field that a reference names or writes.
@@ -77,23 +78,28 @@ impl Builder<'_> {
 
     /// The materials of the elements of a skeleton; none of other fields.
     fn element_materials(&mut self, reference: &FieldReference) -> Option<Vec<Option<MaterialHandle>>> {
-        let spec = self.spec;
-        let definition = match reference {
-            FieldReference::Named(name) => &spec.fields.get(&name.value)?.value,
-            FieldReference::Inline(field) => &field.value,
-        };
-        let Kind::Skeleton(skeleton) = &definition.kind else { return Some(Vec::new()) };
-        if skeleton.elements.iter().all(|element| element.value.material.is_none()) {
+        let elements = written_elements(self.spec, reference);
+        if elements.iter().all(|element| element.value.material.is_none()) {
             return Some(Vec::new());
         }
         let mut all = Vec::new();
-        for element in &skeleton.elements {
+        for element in elements {
             all.push(match &element.value.material {
                 Some(name) => Some(self.material(&name.value.0)?),
                 None => None,
             });
         }
         Some(all)
+    }
+
+    /// The colors of the elements of a skeleton; none of other fields.
+    fn element_colors(&self, reference: &FieldReference) -> Vec<[f64; 4]> {
+        let colors =
+            written_elements(self.spec, reference).iter().map(|element| element.value.color.as_ref());
+        if colors.clone().all(|color| color.is_none()) {
+            return Vec::new();
+        }
+        colors.map(|color| color.map_or([1.0; 4], |color| color.value.linear)).collect()
     }
 
     fn field(&mut self, definition: &FieldDefinition) -> Option<AnyField> {
@@ -270,5 +276,17 @@ impl Builder<'_> {
                 None
             }
         }
+    }
+}
+
+/// The elements of a skeleton as they are written; none of other fields.
+fn written_elements<'s>(spec: &'s Spec, reference: &'s FieldReference) -> &'s [Sp<SkeletonElement>] {
+    let definition: Option<&FieldDefinition> = match reference {
+        FieldReference::Named(name) => spec.fields.get(&name.value).map(|field| &field.value),
+        FieldReference::Inline(field) => Some(&field.value),
+    };
+    match definition.map(|definition| &definition.kind) {
+        Some(Kind::Skeleton(skeleton)) => &skeleton.elements,
+        _ => &[],
     }
 }

@@ -72,6 +72,8 @@ pub enum Recipe {
         surface: Box<FieldSurface>,
         /// For each element of its skeleton the material; none where no element has one.
         materials: Vec<Option<MaterialHandle>>,
+        /// For each element of its skeleton the color, linear; none where no element has one.
+        colors: Vec<[f64; 4]>,
     },
     /// Polygons with bumps.
     Perturbed(Box<PerturbedSkin>),

@@ -8,7 +8,7 @@ use super::limit::{self, Cost};
 use super::material::{middle, own_or, show_normals, source_of, split_by_element};
 use super::reach::bent;
 use super::source::source_count;
-use super::vertex_color::color;
+use super::vertex_color::{blend, color};
 use super::{Faces, Level, Note, Options, RealizeError};
 use crate::geometry::mesh;
 use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
@@ -209,9 +209,10 @@ impl<'a> Maker<'a> {
             Recipe::Quadric(shape) => quadric(shape, &detail),
             Recipe::Perturbed(skin) => perturbed(skin, &detail),
             Recipe::Trimmed(shape) => trimmed(shape, &detail),
-            Recipe::Implicit { surface: field, materials } => {
+            Recipe::Implicit { surface: field, materials, colors } => {
                 let made = field_surface(field, &detail).map_err(|error| self.in_terms_of_limits(error))?;
                 let mut made = surface(made);
+                blend(&mut made, &field.field, colors);
                 if !materials.is_empty() {
                     let of = |mesh: &Mesh, corners: &[VertexIndex; 3]| {
                         field.field.strongest(middle(mesh, corners)).unwrap_or(0)

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::RealizeError;
 use super::shape::Made;
+use crate::geometry::field::AnyField;
 use crate::geometry::mesh::{Color, Mesh, PolygonMesh, Wire, index};
 use crate::model::VertexColor;
 
@@ -20,6 +21,24 @@ pub(super) fn color(made: &mut Made, law: &VertexColor) -> Result<(), RealizeErr
         point.color = point.color.times(at(law, point.position, DVec3::ZERO)?);
     }
     Ok(())
+}
+
+/// Colors the vertices of the surface of a skeleton by the shares of its elements there; what takes away has none.
+pub(super) fn blend(made: &mut Made, field: &AnyField, colors: &[[f64; 4]]) {
+    if colors.is_empty() {
+        return;
+    }
+    for vertex in &mut made.mesh.vertices {
+        let shares = field.shares(made.mesh.points[vertex.point.subscript()]);
+        let shares = || shares.iter().map(|share| share.max(0.0));
+        let total: f64 = shares().sum();
+        if total > 0.0 {
+            let part = |part: usize| {
+                shares().zip(colors).map(|(share, color)| share * color[part]).sum::<f64>() / total
+            };
+            vertex.color = Color::held([part(0), part(1), part(2), part(3)]);
+        }
+    }
 }
 
 /// Colors the corners of polygons, by the mean normals of the faces around their points.

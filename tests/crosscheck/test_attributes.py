@@ -204,3 +204,39 @@ def test_colors_are_read_by_trimesh(kiln: Kiln) -> None:
     wanted = 0.5 + np.asarray(mesh.vertices) * [0.25, 0.5, 0.25]
     assert np.abs(shades[:, :3] - wanted).max() < 1.01 / 255
     assert (shades[:, 3] == 1).all()
+
+
+MELTING = """
+tolerance = 0.004
+[shape.s]
+at = [1, 2, 3]
+[shape.s.implicit]
+field = "blobs"
+[field.blobs.skeleton]
+level = 0.4
+elements = [
+  { point = [0, 0, 0], radius = 1.0, color = [1, 0, 0] },
+  { point = [0.8, 0, 0], radius = 0.9, strength = 1.2, color = [0, 0.5, 1] },
+  { point = [0, 0.7, 0], radius = 0.8 },
+  { point = [0, 0, 0.6], radius = 0.5, strength = -0.5, color = [0, 1, 0] },
+]
+"""
+
+
+def test_colors_of_elements_blend_by_their_shares(kiln: Kiln) -> None:
+    asset = kiln.bake(MELTING)
+    points, shades = attribute(asset, "POSITION"), attribute(asset, "COLOR_0")
+    wyvill = lambda s: np.where(s < 1, 1 - 22 / 9 * s + 17 / 9 * s**2 - 4 / 9 * s**3, 0.0)  # noqa: E731 -- one formula
+    # What takes away has no color; what has none is white.
+    elements = [
+        ([0, 0, 0], 1.0, 1.0, [1, 0, 0]),
+        ([0.8, 0, 0], 0.9, 1.2, [0, 0.5, 1]),
+        ([0, 0.7, 0], 0.8, 1.0, [1, 1, 1]),
+    ]
+    local = points - [1, 2, 3]
+    squares = [((local - np.asarray(at)) ** 2).sum(axis=1) / radius**2 for at, radius, _, _ in elements]
+    shares = np.stack([one[2] * wyvill(square) for one, square in zip(elements, squares, strict=True)])
+    wanted = (shares[:, :, None] * np.asarray([one[3] for one in elements])[:, None, :]).sum(axis=0)
+    wanted /= shares.sum(axis=0)[:, None]
+    np.testing.assert_allclose(shades[:, :3], wanted, atol=1e-5)
+    assert len(np.unique(np.round(shades, 3), axis=0)) > 100

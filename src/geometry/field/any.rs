@@ -216,16 +216,23 @@ impl AnyField {
         }
     }
 
+    /// Of a skeleton, moved or not, what each element adds at a point; none of other fields.
+    #[must_use]
+    pub fn shares(&self, point: DVec3) -> Vec<f64> {
+        match self {
+            Self::Skeleton(skeleton) => skeleton.shares(point),
+            Self::Placed(placed) => placed.of.shares(placed.back.transform_point3(point)),
+            Self::Sum(sum) => sum.of.first().map_or_else(Vec::new, |(_, of)| of.shares(point)),
+            Self::Skin { of, .. } | Self::Grown { of, .. } => of.shares(point),
+            _ => Vec::new(),
+        }
+    }
+
     /// Of a skeleton, moved or not, the element whose share is greatest at a point.
     #[must_use]
     pub fn strongest(&self, point: DVec3) -> Option<usize> {
-        match self {
-            Self::Skeleton(skeleton) => Some(skeleton.strongest(point)),
-            Self::Placed(placed) => placed.of.strongest(placed.back.transform_point3(point)),
-            Self::Sum(sum) => sum.of.first()?.1.strongest(point),
-            Self::Skin { of, .. } | Self::Grown { of, .. } => of.strongest(point),
-            _ => None,
-        }
+        let all = self.shares(point).into_iter().enumerate();
+        all.reduce(|best, one| if one.1 > best.1 { one } else { best }).map(|(index, _)| index)
     }
 
     /// Whether its surface may have edges.

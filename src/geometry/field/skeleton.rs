@@ -183,14 +183,13 @@ impl Skeleton {
         self.elements.iter().any(|element| ends_hard(element) || !element.form.is_convex())
     }
 
-    /// The element whose share is greatest at a point.
+    /// What each element adds at a point; negative ones take away.
     #[must_use]
-    pub fn strongest(&self, point: DVec3) -> usize {
+    pub fn shares(&self, point: DVec3) -> Vec<f64> {
         let share = |element: &Element| {
             element.strength * element.potential.value(element.form.away(point).length_squared())
         };
-        let all = self.elements.iter().enumerate().map(|(index, element)| (index, share(element)));
-        all.fold((0, f64::NEG_INFINITY), |best, one| if one.1 > best.1 { one } else { best }).0
+        self.elements.iter().map(share).collect()
     }
 
     /// Bounds on values and derivatives over a box.

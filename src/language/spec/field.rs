@@ -9,6 +9,7 @@ use crate::language::spec::check::Check;
 use crate::language::spec::construct::{choices, kinds, table};
 use crate::language::spec::formula::Formula;
 use crate::language::spec::kind::{Kinds, take_kind};
+use crate::language::spec::material::Color;
 use crate::language::spec::primitive::{BoxShape, Capsule, Cone, Cylinder, Sphere, Torus};
 use crate::language::spec::quadric::Within;
 use crate::language::spec::reader::{Fields, Read, Reader};
@@ -109,6 +110,9 @@ table! {
         potential: Sp<FallOff> = FallOff::Wyvill;
         /// The material of the surface where this element is the strongest.
         material: Option<Sp<MaterialName>>;
+        /// The color of the surface near this element, which multiplies that of the material: colors of elements blend by their
+        /// shares of the sum, and elements without one are white.
+        color: Option<Sp<Color>>;
     }
     checked check
 }
