@@ -67,6 +67,8 @@ pub struct Reached {
     pub distances: Vec<f64>,
     /// For each goal the angle to its facing, degrees.
     pub turns: Vec<f64>,
+    /// From how many poses it was looked for.
+    pub starts: usize,
 }
 
 /// Where else to look when a pose does not reach.
@@ -151,6 +153,9 @@ impl<'a> InverseKinematics<'a> {
 
     /// The pose nearest to `start`, in steps that are each the shortest, that reaches the goals as nearly as could be found.
     ///
+    /// A pole need not be met: where the goals and limits leave no room for it, the pose that is found from a near start
+    /// holds as soon as its bend is on the pole's side. So frames of a motion take one start each.
+    ///
     /// Cost: a few dozen steps, each O(joints * goals); as many times more as starts are needed.
     #[must_use]
     pub fn solve(&self, stand: &Stand, goals: &[Goal], start: &Angles, search: Search) -> Reached {
@@ -158,8 +163,10 @@ impl<'a> InverseKinematics<'a> {
         let mut dice = Dice(0x9E37_79B9_7F4A_7C15);
         let mut best: Option<(f64, Angles)> = None;
         let far = if search == Search::Far { ANYWHERE } else { 0 };
-        let starts = NEAR.iter().copied().chain(std::iter::repeat_n(f64::INFINITY, far));
-        for spread in starts {
+        let spreads = NEAR.iter().copied().chain(std::iter::repeat_n(f64::INFINITY, far));
+        let mut starts = 0;
+        for spread in spreads {
+            starts += 1;
             let from = self.stray(&start, spread, &mut dice);
             let mut angles = from;
             if goals.iter().any(|goal| goal.pole.is_some()) {
@@ -167,16 +174,17 @@ impl<'a> InverseKinematics<'a> {
             }
             let rest = self.descend(stand, goals, &mut angles, false);
             let bent = self.off_poles(stand, goals, &angles);
+            let settled = search == Search::Near && rest <= REACHED && self.on_poles(stand, goals, &angles);
             let score = rest + 0.01 * bent;
             if best.as_ref().is_none_or(|(least, _)| score < 0.999 * least - 1e-12) {
                 best = Some((score, angles));
             }
-            if best.as_ref().is_some_and(|(least, _)| *least <= REACHED + 0.01 * BENT) {
+            if settled || best.as_ref().is_some_and(|(least, _)| *least <= REACHED + 0.01 * BENT) {
                 break;
             }
         }
         let angles = best.map_or(start, |(_, angles)| angles);
-        self.judged(stand, goals, angles)
+        Reached { starts, ..self.judged(stand, goals, angles) }
     }
 
     /// The pose with everything in its range; joints that do not turn here at rest.
@@ -419,6 +427,16 @@ impl<'a> InverseKinematics<'a> {
         goals.iter().map(off).sum::<f64>() / self.size
     }
 
+    /// Whether all chains bend to the side of their poles, or are straight.
+    fn on_poles(&self, stand: &Stand, goals: &[Goal], angles: &Angles) -> bool {
+        let worlds = self.worlds(stand, angles);
+        goals.iter().all(|goal| {
+            let Some(pole) = &goal.pole else { return true };
+            let (bend, toward) = pole_bend(goal, pole, &worlds);
+            bend.dot(toward) >= 0.0
+        })
+    }
+
     fn judged(&self, stand: &Stand, goals: &[Goal], angles: Angles) -> Reached {
         let worlds = self.worlds(stand, &angles);
         let distance = |goal: &Goal| {
@@ -430,7 +448,7 @@ impl<'a> InverseKinematics<'a> {
             goal.facing.map_or(0.0, |facing| turn_between(facing, found).length().to_degrees())
         };
         let (distances, turns) = (goals.iter().map(distance).collect(), goals.iter().map(turn).collect());
-        Reached { angles, distances, turns }
+        Reached { angles, distances, turns, starts: 0 }
     }
 }
 
@@ -459,14 +477,20 @@ impl Freedom {
 }
 
 /// How far the bend of a chain is from where its pole asks for it, metres.
-fn pole_error(goal: &Goal, (pole, joints): &(DVec3, Vec<usize>), worlds: &[DAffine3]) -> DVec3 {
-    let Some((first, bending)) = joints.split_first() else { return DVec3::ZERO };
+fn pole_error(goal: &Goal, pole: &(DVec3, Vec<usize>), worlds: &[DAffine3]) -> DVec3 {
+    let (bend, toward) = pole_bend(goal, pole, worlds);
+    bend - toward * bend.length()
+}
+
+/// The bend of a chain, metres, and the direction to its pole, both square to the line from its start to its end.
+fn pole_bend(goal: &Goal, (pole, joints): &(DVec3, Vec<usize>), worlds: &[DAffine3]) -> (DVec3, DVec3) {
+    let Some((first, bending)) = joints.split_first() else { return (DVec3::ZERO, DVec3::ZERO) };
     let start = worlds[*first].translation;
     let axis = (worlds[goal.joint].transform_point3(goal.point) - start).normalize_or_zero();
     let aside = |point: DVec3| (point - start) - axis * axis.dot(point - start);
     let bend = bending.iter().map(|joint| aside(worlds[*joint].translation)).sum::<DVec3>()
         / bending.len().max(1) as f64;
-    bend - aside(*pole).normalize_or_zero() * bend.length()
+    (bend, aside(*pole).normalize_or_zero())
 }
 
 fn rotation_of(map: &DAffine3) -> DQuat {

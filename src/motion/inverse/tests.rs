@@ -204,6 +204,41 @@ fn elbows_bend_toward_their_poles_and_hands_face_as_asked() {
     }
 }
 
+/// An arm that is told how its hand stands, with limits that leave its elbow no way to the pole: after the first frame
+/// one start is enough, and the elbow stays on the side of the pole.
+#[test]
+fn poles_that_cannot_be_met_cost_no_search_in_every_frame() {
+    let hinge = Limits { ranges: [turns(-150.0, 150.0), turns(0.0, 0.0), turns(0.0, 0.0)] };
+    // The shoulder turns little about the bone, so that the elbow stays near the y-z plane.
+    let shoulder = Limits { ranges: [turns(-120.0, 120.0), turns(-5.0, 5.0), turns(-60.0, 60.0)] };
+    let wrist = Limits { ranges: [turns(-120.0, 120.0), turns(-90.0, 90.0), turns(-60.0, 60.0)] };
+    let skeleton = chain(&[1.0, 1.0, 0.3], DVec3::Y, &[shoulder, hinge, wrist]);
+    let mut pose = Angles::rest(&skeleton);
+    let (mut later, mut off) = (0, 0.0_f64);
+    for frame in 0..60 {
+        let turn = 3.0 * f64::from(frame);
+        let (sine, cosine) = crate::geometry::number::sin_cos_degrees(turn);
+        let goal = Goal {
+            joint: 2,
+            point: DVec3::Y * 0.3,
+            place: Some(DVec3::new(0.15 * sine, 1.5, 0.2 * cosine)),
+            facing: Some(crate::motion::about(DVec3::X, 20.0 * cosine) * skeleton.joints[2].frame),
+            pole: Some((DVec3::new(5.0, 1.0, 3.0), vec![0, 1, 2])),
+        };
+        let search = if frame == 0 { Search::Far } else { Search::Near };
+        let found = reach(&skeleton, std::slice::from_ref(&goal), &pose, search);
+        assert!(found.distances[0] < 1e-6 && found.turns[0] < 1e-3, "{frame}: {found:?}");
+        let all = [0, 1, 2];
+        let solver = InverseKinematics::new(&skeleton, &all);
+        off = off.max(solver.off_poles(&stand(&skeleton), std::slice::from_ref(&goal), &found.angles));
+        assert!(solver.on_poles(&stand(&skeleton), &[goal], &found.angles), "{frame}");
+        later += if frame == 0 { 0 } else { found.starts };
+        pose = found.angles;
+    }
+    assert!(off > 10.0 * super::BENT, "the pole is never met: {off}");
+    assert_eq!(later, 59);
+}
+
 /// Two hands of one body, both held.
 #[test]
 fn several_goals_are_met_at_once() {
