@@ -9,7 +9,7 @@ use crate::geometry::mesh;
 use crate::import::keyframes::Keyframes;
 use crate::import::{self, ImportError, ImportOptions, Imported, MaterialLook, Note};
 use crate::language::diagnostic::{Code, Diagnostic};
-use crate::language::source::{FileError, Span, join};
+use crate::language::source::{FileError, Files, Span, join};
 use crate::language::spec::{FilePath, Import, Sp, Up};
 use crate::model::{AlphaMode, Material, MaterialHandle, Recipe};
 
@@ -108,12 +108,7 @@ impl Builder<'_> {
             weld: import.weld.map(|weld| weld.value),
             most: self.model.limits.triangles,
         };
-        let files = self.files;
-        let base = file.value.resolved.clone();
-        let mut open = |path: &str| {
-            let path = join(&base, path).ok()?;
-            files.read(&path).ok().map(|bytes| bytes.to_vec())
-        };
+        let mut open = beside(self.files, &file.value);
         let read = match file.value.extension().as_str() {
             "stl" => import::stl::read(&bytes, &options),
             "obj" => import::obj::read(&bytes, &options, &mut open),
@@ -244,6 +239,18 @@ impl Builder<'_> {
             double_sided: look.double_sided,
         });
         Some(MaterialHandle(mesh::index(self.model.materials.len()) - 1))
+    }
+}
+
+/// Reads files by their paths from another.
+pub(super) fn beside<'f>(
+    files: &'f dyn Files,
+    file: &FilePath,
+) -> impl FnMut(&str) -> Option<Vec<u8>> + use<'f> {
+    let base = file.resolved.clone();
+    move |path: &str| {
+        let path = join(&base, path).ok()?;
+        files.read(&path).ok().map(|bytes| bytes.to_vec())
     }
 }
 

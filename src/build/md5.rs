@@ -6,7 +6,7 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use super::Builder;
-use super::motion_file::{Turned, joint_name, no_joint};
+use super::motion_file::{Turned, joint_name, no_joint, rooted, still};
 use super::skeleton::unknown_joint;
 use crate::geometry::number::single;
 use crate::import::ImportError;
@@ -19,9 +19,6 @@ use crate::language::spec::{self, FilePath, Shape as Kind, Sp, kebab};
 use crate::model::{ClipTrack, Space, Target, WeightRule};
 use crate::motion::{Course, Interpolation, Keys, Law, Skeleton};
 
-/// The name of a joint that carries those that nothing carries, where there are several.
-const ROOT: &str = "root";
-
 impl Builder<'_> {
     /// The model of a file; of its meshes those of a material, if one is named.
     fn read_md5(&mut self, file: &Sp<FilePath>, group: Option<&str>) -> Option<Md5Mesh> {
@@ -32,22 +29,12 @@ impl Builder<'_> {
     /// The joints of a mesh, each by its offset from its parent along the axes of the file.
     pub(super) fn md5_joints(&mut self, file: &Sp<FilePath>) -> Option<Vec<BvhJoint>> {
         let found = self.read_md5(file, None)?;
-        let several = found.joints.iter().filter(|joint| joint.parent.is_none()).count() > 1;
         let place = |joint: usize| found.places[joint].translation;
         let plain = |(index, joint): (usize, &Md5Joint)| {
             let offset = place(index) - joint.parent.map_or(DVec3::ZERO, place);
-            // One stands before them where there are several roots.
-            let parent = joint.parent.map(|parent| parent + usize::from(several));
-            still(joint_name(&joint.name, index), parent.or(several.then_some(0)), offset)
+            still(joint_name(&joint.name, index), joint.parent, offset)
         };
-        let mut joints: Vec<BvhJoint> = found.joints.iter().enumerate().map(plain).collect();
-        if several {
-            let free = |name: &String| joints.iter().all(|joint| joint.name != *name);
-            let names = (1..).map(|k| if k == 1 { ROOT.to_owned() } else { format!("{ROOT}-{k}") });
-            let name = names.into_iter().find(free).unwrap_or_default();
-            joints.insert(0, still(name, None, DVec3::ZERO));
-        }
-        Some(joints)
+        Some(rooted(found.joints.iter().enumerate().map(plain).collect()))
     }
 
     /// The weights that the file of a shape has, and the joints that carry.
@@ -58,17 +45,22 @@ impl Builder<'_> {
     ) -> Option<(Vec<usize>, WeightRule)> {
         let name = &written.shape.value.0;
         let kind = &self.spec.shapes.get(name)?.value.kind;
-        let weighted =
-            |import: &spec::Import| import.file.value.extension() == "md5mesh" && import.weld.is_none();
         let Kind::Import(import) = kind else { return self.no_weights(&written.shape) };
-        if !weighted(import) {
-            return self.no_weights(&written.shape);
-        }
         // The shape was read, so that this succeeds again.
-        let found = self.read_md5(&import.file, import.group.as_ref().map(|group| group.value.as_str()))?;
-        let mut joints = Vec::with_capacity(found.joints.len());
-        for (index, joint) in found.joints.iter().enumerate() {
-            let name = joint_name(&joint.name, index);
+        let (names, weights) = match import.file.value.extension().as_str() {
+            _ if import.weld.is_some() => return self.no_weights(&written.shape),
+            "md5mesh" => {
+                let group = import.group.as_ref().map(|group| group.value.as_str());
+                let found = self.read_md5(&import.file, group)?;
+                let names =
+                    found.joints.iter().enumerate().map(|(index, joint)| joint_name(&joint.name, index));
+                (names.collect::<Vec<_>>(), found.weights)
+            }
+            "glb" | "gltf" => self.gltf_weights(import, &written.shape)?,
+            _ => return self.no_weights(&written.shape),
+        };
+        let mut joints = Vec::with_capacity(names.len());
+        for name in names {
             let Some(own) = bones.find(&name) else {
                 let known = bones.joints.iter().map(|joint| joint.bone.name.as_str());
                 self.report(unknown_joint(&Sp::new(name, written.skeleton.span), known, "joint"));
@@ -80,15 +72,15 @@ impl Builder<'_> {
         sorted.sort_unstable();
         let place = |joint: usize| sorted.partition_point(|own| *own < joints[joint]);
         let of = |own: &Vec<(usize, f64)>| own.iter().map(|(joint, share)| (place(*joint), *share)).collect();
-        let weights = found.weights.iter().map(of).collect();
+        let weights = weights.iter().map(of).collect();
         Some((sorted, WeightRule::Given(weights)))
     }
 
-    fn no_weights<T>(&mut self, shape: &Sp<spec::ShapeName>) -> Option<T> {
+    pub(super) fn no_weights<T>(&mut self, shape: &Sp<spec::ShapeName>) -> Option<T> {
         let message = format!("shape `{}` does not have the points of a file with weights", shape.value.0);
         let report = Diagnostic::error(Code::UnknownPart, message)
             .at(shape.span, "no weights")
-            .help("only `[shape.NAME.import]` of an MD5 mesh (.md5mesh) without `weld` has them");
+            .help("only `[shape.NAME.import]` of a glTF file with a skin or of an MD5 mesh (.md5mesh), without `weld`, has them");
         self.report(report);
         None
     }
@@ -185,11 +177,6 @@ impl Builder<'_> {
         }
         courses
     }
-}
-
-/// A joint that only stands somewhere.
-fn still(name: String, parent: Option<usize>, offset: DVec3) -> BvhJoint {
-    BvhJoint { name, parent, offset: offset.to_array(), end: None, channels: Vec::new(), first: 0 }
 }
 
 /// The name of the joint that carries another.

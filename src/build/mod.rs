@@ -22,6 +22,7 @@ mod field;
 mod formula;
 mod formula_curve;
 mod frames;
+mod gltf;
 mod height;
 mod height_base;
 mod implicit;

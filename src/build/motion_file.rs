@@ -16,6 +16,9 @@ use crate::motion::{Axis, Course, Interpolation, Keys, Law, Skeleton, about};
 /// The most numbers of a motion that is read into a clip.
 const MOST_NUMBERS: usize = 4_000_000;
 
+/// The name of a joint that carries those that nothing carries, where there are several.
+const ROOT: &str = "root";
+
 /// How the numbers of a file become those of the document.
 pub(super) struct Turned {
     pub(super) axes: DMat3,
@@ -27,6 +30,7 @@ impl Builder<'_> {
     pub(super) fn imported_joints(&mut self, import: &Sp<spec::SkeletonImport>) -> Option<Vec<Draft>> {
         let joints = match import.file.value.extension().as_str() {
             "md5mesh" => self.md5_joints(&import.file)?,
+            "glb" | "gltf" => self.gltf_joints(&import.file)?,
             _ => self.bvh(&import.file)?.joints,
         };
         let up = import.up.map_or_else(|| default_up(&import.file), |up| up.value);
@@ -61,8 +65,10 @@ impl Builder<'_> {
         clip: &spec::Clip,
         import: &Sp<spec::MotionImport>,
     ) -> Option<(f64, Vec<ClipTrack>)> {
-        if import.file.value.extension() == "md5anim" {
-            return self.md5_motion(clip, import);
+        match import.file.value.extension().as_str() {
+            "md5anim" => return self.md5_motion(clip, import),
+            "glb" | "gltf" => return self.gltf_motion(clip, import),
+            _ => {}
         }
         let bvh = self.bvh(&import.file)?;
         let numbers = bvh.frames.len() * bvh.joints.len();
@@ -194,6 +200,26 @@ fn bone(joints: &[BvhJoint], index: usize, place: &impl Fn([f64; 3]) -> DVec3, u
         .or(below.first().copied())
         .or((joint.parent.is_some() && onward != DVec3::ZERO).then_some(onward))
         .unwrap_or(DVec3::Y * length)
+}
+
+/// Joints, with one at the origin before them that carries those without a parent where there are several.
+pub(super) fn rooted(mut joints: Vec<BvhJoint>) -> Vec<BvhJoint> {
+    if joints.iter().filter(|joint| joint.parent.is_none()).count() < 2 {
+        return joints;
+    }
+    for joint in &mut joints {
+        joint.parent = Some(joint.parent.map_or(0, |parent| parent + 1));
+    }
+    let free = |name: &String| joints.iter().all(|joint| joint.name != *name);
+    let names = (1..).map(|k| if k == 1 { ROOT.to_owned() } else { format!("{ROOT}-{k}") });
+    let name = names.into_iter().find(free).unwrap_or_default();
+    joints.insert(0, still(name, None, DVec3::ZERO));
+    joints
+}
+
+/// A joint that only stands somewhere.
+pub(super) fn still(name: String, parent: Option<usize>, offset: DVec3) -> BvhJoint {
+    BvhJoint { name, parent, offset: offset.to_array(), end: None, channels: Vec::new(), first: 0 }
 }
 
 /// The name of a joint as documents write names.

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
-from typing import TYPE_CHECKING
+import sys
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 import trimesh
+from scipy.interpolate import CubicHermiteSpline
+from scipy.spatial.transform import Rotation, Slerp
 
 from checks import played
 from checks.document import Document
@@ -61,32 +65,231 @@ def test_still_files_are_those_of_trimesh(kiln: Kiln, cases: Path, name: str) ->
         assert volume == pytest.approx(wanted.volume, rel=1e-5)
 
 
+class CubicHermiteSplines:
+    """Keys with a slope before and one after each, by scipy."""
+
+    def __init__(self, times: NDArray[np.float64], rows: NDArray[np.float64]) -> None:
+        self.times = times
+        self.pieces = [
+            CubicHermiteSpline(times[k : k + 2], rows[k : k + 2, 1], [rows[k, 2], rows[k + 1, 0]])
+            for k in range(len(times) - 1)
+        ]
+
+    def at(self, time: float) -> NDArray[np.float64]:
+        """The value at a time."""
+        place = int(np.clip(np.searchsorted(self.times, time, side="right") - 1, 0, len(self.pieces) - 1))
+        return self.pieces[place](np.clip(time, self.times[0], self.times[-1]))
+
+
+class Stage(played.Stage):
+    """A file whose turns are brought to length 1 before they are interpolated, by scipy."""
+
+    def sample(self, sampler: dict[str, Any], path: str, time: float) -> NDArray[np.float64]:
+        """A sampler's value."""
+        times = self.document.accessor(sampler["input"]).astype(float).ravel()
+        if sampler.get("interpolation") == "CUBICSPLINE":
+            rows = self.document.accessor(sampler["output"]).astype(float).reshape(len(times), 3, -1)
+            value = CubicHermiteSplines(times, rows).at(time)
+            return value / np.linalg.norm(value) if path == "rotation" else value
+        if path != "rotation" or len(times) < 2 or sampler.get("interpolation", "LINEAR") != "LINEAR":
+            return super().sample(sampler, path, time)
+        turns = Rotation.from_quat(self.document.accessor(sampler["output"]).astype(float))
+        return Slerp(times, turns)(np.clip(time, times[0], times[-1])).as_quat()
+
+
+def binding(document: Document, stage: played.Stage) -> tuple[list[int], NDArray[np.float64], NDArray[np.float64]]:
+    """Joints of the first skin, their inverse bind matrices, and the map from its mesh to the scene as it is bound."""
+    skin = document.json["skins"][0]
+    back = document.accessor(skin["inverseBindMatrices"]).reshape(-1, 4, 4).transpose(0, 2, 1).astype(float)
+    return skin["joints"], back, stage.world(skin["joints"][0], stage.nodes) @ back[0]
+
+
 @pytest.mark.cases
 @pytest.mark.parametrize("name", SKINNED)
-def test_skinned_files_stand_as_their_joints_rest(kiln: Kiln, cases: Path, name: str) -> None:
-    """Every vertex by the sum over its joints, in numpy."""
+def test_skinned_files_stand_as_they_are_bound(kiln: Kiln, cases: Path, name: str) -> None:
+    """Where their first joint brings them, in numpy."""
     file = bring(cases, name, kiln)
     document = Document(kiln.folder / file)
-    stage = played.Stage(document)
-    nodes = document.json["nodes"]
-    node = next(node for node in nodes if "skin" in node)
-    skin = document.json["skins"][node["skin"]]
-    worlds = [stage.world(joint, nodes) for joint in skin["joints"]]
-    back = document.accessor(skin["inverseBindMatrices"]).reshape(-1, 4, 4).transpose(0, 2, 1)
-    maps = np.array([world @ inverse for world, inverse in zip(worlds, back, strict=True)])
-    places = []
-    for primitive in document.json["meshes"][node["mesh"]]["primitives"]:
-        of = {key: document.accessor(index) for key, index in primitive["attributes"].items()}
-        weights = of["WEIGHTS_0"] / of["WEIGHTS_0"].sum(1, keepdims=True)
-        blend = np.einsum("vk,vkij->vij", weights, maps[of["JOINTS_0"].astype(int)])
-        places.append(np.einsum("vij,vj->vi", blend[:, :3, :3], of["POSITION"]) + blend[:, :3, 3])
-    wanted = np.concatenate(places)
+    _, _, bound = binding(document, played.Stage(document))
+    node = next(node for node in document.json["nodes"] if "skin" in node)
+    primitives = document.json["meshes"][node["mesh"]]["primitives"]
+    places = np.concatenate([document.accessor(one["attributes"]["POSITION"]).astype(float) for one in primitives])
+    wanted = places @ bound[:3, :3].T + bound[:3, 3]
     points, triangles = kiln.bake(f'[shape.s.import]\nfile = "{file}"\n').mesh("s")
     size = float(np.ptp(wanted, axis=0).max())
     assert np.abs(np.stack([points.min(0) - wanted.min(0), points.max(0) - wanted.max(0)])).max() < SINGLE * size
     assert len(triangles) > 0
     near = np.linalg.norm(points[::17, None] - wanted[None], axis=2).min(1)
     assert near.max() < SINGLE * size
+
+
+def worlds(stage: played.Stage, animation: dict[str, Any], question: dict[str, Any]) -> list[NDArray[np.float64]]:
+    """The world matrix of every node at a time."""
+    places = range(len(stage.nodes))
+    named = {**stage.names}
+    stage.names = {f"#{place}": place for place in places}
+    pose = stage.pose(animation, {**question, "nodes": list(stage.names)})
+    stage.names = named
+    return [np.array(pose["nodes"][f"#{place}"]).reshape(4, 4).T for place in places]
+
+
+def even(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The nearest turn of even scale."""
+    before, stretch, after = np.linalg.svd(matrix)
+    return before @ after * stretch.mean()
+
+
+def kebab(name: str, index: int) -> str:
+    """A joint's name as a document has it."""
+    words = re.findall(r"[A-Z]+(?![a-z])[0-9]*|[A-Z]?[a-z]+[0-9]*|[0-9]+", name)
+    return "-".join(words).lower() if words else f"joint-{index + 1}"
+
+
+@pytest.mark.cases
+@pytest.mark.parametrize(("name", "number"), [(name, 0) for name in SKINNED] + [("Fox.glb", 1), ("Fox.glb", 2)])
+def test_skeletons_and_animations_play_the_same(
+    kiln: Kiln, cases: Path, name: str, number: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The matrix of each joint with its bind taken out, at keys and between them.
+
+    The rounded matrices of the files stretch axes unevenly by as much as a millionth, which a skeleton does not.
+    """
+    file = bring(cases, name, kiln)
+    document = Document(kiln.folder / file)
+    stage = Stage(document)
+    joints, back, bound = binding(document, stage)
+    animation = document.json["animations"][number]
+    mesh = next(node["mesh"] for node in stage.nodes if "skin" in node)
+    positions = document.accessor(document.json["meshes"][mesh]["primitives"][0]["attributes"]["POSITION"])
+    size = float(np.linalg.norm(np.ptp(positions @ bound[:3, :3].T, axis=0)))
+    chosen = f'animation = "{animation["name"]}"\n' if "name" in animation else ""
+    baked = kiln.bake(
+        f'[shape.s.import]\nfile = "{file}"\n[skeleton.k.import]\nfile = "{file}"\n'
+        '[skin.m]\nshape = "s"\nskeleton = "k"\nweights = "imported"\n'
+        f'[clip.c]\ntolerance = {1e-7 * size}\n[clip.c.import]\nfile = "{file}"\n{chosen}'
+    )
+    again = Stage(baked.document)
+    ours, own_back, own_bound = binding(baked.document, again)
+    assert np.abs(own_bound - np.eye(4)).max() < 1e-6
+    names = {again.nodes[joint]["name"]: place for place, joint in enumerate(ours)}
+    last = max(document.accessor(one["input"]).max() for one in animation["samplers"])
+    times = np.linspace(0, float(last), 23)
+    worst, uneven = 0.0, 0.0
+    for time in times:
+        question = {"time": float(time), "nodes": [], "vertices": {}}
+        before, after = (
+            worlds(stage, animation, question),
+            worlds(again, baked.document.json["animations"][0], question),
+        )
+        for place, joint in enumerate(joints):
+            own = names[kebab(stage.nodes[joint].get("name", ""), sorted(joints).index(joint))]
+            wanted = before[joint] @ back[place] @ np.linalg.inv(bound)
+            found = after[ours[own]] @ own_back[own]
+            apart = found[:3] - np.column_stack([even(wanted[:3, :3]), wanted[:3, 3]])
+            worst = max(worst, float(np.abs(apart).max(0) @ [0, 0, 0, 1]) / size, float(np.abs(apart[:3, :3]).max()))
+            uneven = max(uneven, float(np.abs(wanted[:3, :3] - even(wanted[:3, :3])).max()))
+    with capsys.disabled():
+        sys.stdout.write(
+            f"\n{name}, animation {number}: joint matrices within {worst:.1e} of the model's size; "
+            f"the file's own stretch unevenly by {uneven:.1e}\n"
+        )
+    assert worst < 1e-6
+
+
+def cubic_file(path: Path) -> None:
+    """Two joints, turned and bound askew, one of them behind a node that is none; moves by cubics with a corner."""
+    chance = np.random.default_rng(5)
+    bind = [np.eye(4), np.eye(4)]
+    bind[0][:3, :3] = Rotation.from_euler("xyz", [30, -50, 80], degrees=True).as_matrix()
+    bind[1][:3, :3] = Rotation.from_euler("xyz", [-70, 10, 25], degrees=True).as_matrix() * 0.5
+    bind[0][:3, 3], bind[1][:3, 3] = [0.2, 0.1, 0], [0.4, 1.1, -0.3]
+    between = np.eye(4)
+    between[:3, 3] = [0.1, 0.2, 0.3]
+    below = np.linalg.inv(bind[0] @ between) @ bind[1]
+    turns = Rotation.from_matrix(below[:3, :3] / 0.5) * Rotation.from_rotvec(chance.normal(0, 0.5, (4, 3)))
+    turns = turns.as_quat()
+    turns *= np.where(turns @ turns[0] < 0, -1, 1)[:, None]
+    times = np.array([0, 0.4, 0.9, 1.5])
+    cubic = np.stack([chance.normal(0, 0.3, (4, 4)), turns, chance.normal(0, 0.3, (4, 4))], axis=1)
+    moves = np.stack([chance.normal(0, 0.4, (4, 3)), below[:3, 3] + chance.normal(0, 0.1, (4, 3)), np.zeros((4, 3))], 1)
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 2, 0]])
+    weights = np.tile([0.5, 0.5, 0, 0], (3, 1))
+    back = np.array([np.linalg.inv(one).T for one in bind])
+    arrays = [points, weights, back, times, cubic, moves]
+    data = b"".join(np.asarray(one, "<f4").tobytes() for one in arrays) + bytes([0, 1, 0, 0] * 3)
+    starts = np.cumsum([0] + [4 * one.size for one in arrays])
+    kinds = ["VEC3", "VEC4", "MAT4", "SCALAR", "VEC4", "VEC3"]
+    counts = [3, 3, 2, 4, 12, 12]
+    views = [
+        {"buffer": 0, "byteOffset": int(s), "byteLength": 4 * a.size} for s, a in zip(starts, arrays, strict=False)
+    ]
+    views.append({"buffer": 0, "byteOffset": int(starts[-1]), "byteLength": 12})
+    accessors: list[dict[str, Any]] = [
+        {"bufferView": k, "componentType": 5126, "type": kinds[k], "count": counts[k]} for k in range(6)
+    ]
+    accessors[0] |= {"min": [0, 0, 0], "max": [1, 2, 0]}
+    accessors[3] |= {"min": [0], "max": [1.5]}
+    accessors.append({"bufferView": 6, "componentType": 5121, "type": "VEC4", "count": 3})
+    flat = [one.T.ravel().tolist() for one in (bind[0], below)]
+    document = {
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": len(data), "uri": "cubic.bin"}],
+        "bufferViews": views,
+        "accessors": accessors,
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "JOINTS_0": 6, "WEIGHTS_0": 1}}]}],
+        "skins": [{"joints": [1, 3], "inverseBindMatrices": 2}],
+        "nodes": [
+            {"mesh": 0, "skin": 0},
+            {"name": "upper", "matrix": flat[0], "children": [2]},
+            {"name": "between", "translation": [0.1, 0.2, 0.3], "children": [3]},
+            {"name": "lower", "rotation": turns[0].tolist(), "translation": below[:3, 3].tolist(), "scale": [0.5] * 3},
+        ],
+        "scenes": [{"nodes": [0, 1]}],
+        "animations": [
+            {
+                "name": "sway",
+                "channels": [
+                    {"sampler": 0, "target": {"node": 3, "path": "rotation"}},
+                    {"sampler": 1, "target": {"node": 3, "path": "translation"}},
+                ],
+                "samplers": [
+                    {"input": 3, "output": 4, "interpolation": "CUBICSPLINE"},
+                    {"input": 3, "output": 5, "interpolation": "CUBICSPLINE"},
+                ],
+            }
+        ],
+    }
+    path.with_name("cubic.bin").write_bytes(data)
+    path.write_text(json.dumps(document), encoding="utf-8")
+
+
+def test_cubics_and_bent_binds_play_the_same(kiln: Kiln) -> None:
+    """Slopes that differ around a key, a scaled bind, a matrix, a node between joints; z up in the document."""
+    path = kiln.folder / "cubic.gltf"
+    cubic_file(path)
+    document = Document(path)
+    stage = Stage(document)
+    joints, back, bound = binding(document, stage)
+    baked = kiln.bake(
+        'unit = "cm"\nup = "z"\n[shape.s.import]\nfile = "cubic.gltf"\nup = "z"\n[skeleton.k.import]\n'
+        'file = "cubic.gltf"\nup = "z"\n[skin.m]\nshape = "s"\nskeleton = "k"\nweights = "imported"\n'
+        '[clip.c]\ntolerance = 1e-5\nrate = 480\n[clip.c.import]\nfile = "cubic.gltf"\n'
+    )
+    again = Stage(baked.document)
+    ours, own_back, _ = binding(baked.document, again)
+    # One unit is a centimeter, and z of the file points up: (x, y, z) stands at (x, z, -y).
+    into = np.diag([0.01, 0.01, 0.01, 1.0]) @ np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+    worst = 0.0
+    for time in np.linspace(0, 1.5, 61):
+        question = {"time": float(time), "nodes": [], "vertices": {}}
+        before = worlds(stage, document.json["animations"][0], question)
+        after = worlds(again, baked.document.json["animations"][0], question)
+        for place, joint in enumerate(joints):
+            wanted = into @ before[joint] @ back[place] @ np.linalg.inv(bound) @ np.linalg.inv(into)
+            found = after[ours[place]] @ own_back[place]
+            apart = np.abs(found - wanted)[:3]
+            worst = max(worst, float(apart[:, :3].max()), float(apart[:, 3].max()) / 0.02)
+    assert worst < 2e-4, worst
 
 
 def test_what_kiln_writes_it_reads_again(kiln: Kiln) -> None:

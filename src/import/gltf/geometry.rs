@@ -1,14 +1,15 @@
 //! The meshes of a file as one mesh of triangles, where its nodes place them.
 
-use glam::{DAffine3, DMat3, DMat4, DVec2, DVec3, Vec3};
+use glam::{DAffine3, DMat4, DVec2, DVec3, Vec3};
 
-use super::{Data, GltfFault, GltfFile, Node, Part, open};
+use super::{GltfFault, GltfFile, Node, Part, Skin, open};
 use crate::geometry::mesh::polygon::NONE;
-use crate::geometry::mesh::{Color, NormalMap, PolygonMesh, index};
+use crate::geometry::mesh::weld::weld_equal;
+use crate::geometry::mesh::{Color, NormalMap, PointIndex, PolygonMesh, index};
 use crate::import::{ImportError, ImportOptions, Imported, MaterialLook, Note};
 
 /// Reads a file: the triangles of the scene that is shown, in its space, states by their weights at rest, skinned meshes as
-/// their joints stand at rest. Points are joined where they are equal, or within `weld`. Lines and points are left
+/// they are bound, where their first joint at rest brings them. Points are joined where they are equal, or within `weld`. Lines and points are left
 /// out with a note, and so are the pictures of materials.
 ///
 /// `open` reads other files by their paths from this one. Linear in what is read, a mesh once for each node that shows it.
@@ -20,23 +21,48 @@ pub fn read(
     options: &ImportOptions,
     open_other: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
 ) -> Result<Imported, ImportError> {
+    Ok(read_weighted(bytes, options, open_other)?.imported)
+}
+
+/// A mesh with the joints that carry its points.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Weighted {
+    /// The mesh.
+    pub imported: Imported,
+    /// For each point of the mesh the nodes that carry it, joints of its skin, and their shares; none where no skin does.
+    pub weights: Vec<Vec<(usize, f64)>>,
+}
+
+/// As [`read`], with weights. Points on one place with other weights stay apart; where points within `weld` are joined,
+/// weights are left out.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_weighted(
+    bytes: &[u8],
+    options: &ImportOptions,
+    open_other: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+) -> Result<Weighted, ImportError> {
     let file = open(bytes, open_other)?;
     let nodes = file.nodes();
     let shown = shown(&file, &nodes, options)?;
     check_size(&file, &nodes, &shown, options.most)?;
     let worlds = file.worlds();
     let data = file.data();
-    let mut found = Found { mesh: PolygonMesh::default(), lines: 0 };
+    let mut found = Found { mesh: PolygonMesh::default(), weights: Vec::new(), lines: 0 };
     found.mesh.materials = file.document.materials().map(|own| name_of(&own)).collect();
     let mut notes = Vec::new();
     for node in shown {
         let Some(mesh) = nodes[node].mesh.and_then(|mesh| file.document.meshes().nth(mesh)) else { continue };
-        let mesh_index = mesh.index();
+        let index = mesh.index();
         let mesh = super::mesh(&data, &mesh, &mut notes)?;
-        let stand = Stand::new(&file, &data, &nodes[node], (&worlds, worlds[node]))?;
+        let skin = nodes[node].skin.and_then(|skin| file.document.skins().nth(skin));
+        let skin = skin.map(|skin| super::skin(&data, &skin)).transpose()?;
+        let map = skin.as_ref().map_or_else(|| affine(&worlds[node]), |skin| bound(skin, &worlds));
         let weights = if nodes[node].weights.is_empty() { &mesh.weights } else { &nodes[node].weights };
         for part in &mesh.parts {
-            found.part(&morphed(part, weights), &stand, mesh_index)?;
+            found.part(&morphed(part, weights), &map);
+            found.carry(part, skin.as_ref(), index)?;
         }
     }
     finish(&file, found, notes, options)
@@ -47,8 +73,10 @@ fn finish(
     found: Found,
     notes: Vec<String>,
     options: &ImportOptions,
-) -> Result<Imported, ImportError> {
-    let mut mesh = found.mesh;
+) -> Result<Weighted, ImportError> {
+    let mut found = found;
+    found.weld(options.weld);
+    let Found { mut mesh, weights, lines } = found;
     if mesh.faces.is_empty() {
         return Err(match &options.group {
             Some(group) => ImportError::EmptyGroup { group: group.clone() },
@@ -64,11 +92,10 @@ fn finish(
     if mesh.colors.iter().all(|color| *color == Color::WHITE) {
         (mesh.colors, mesh.corner_colors) = (Vec::new(), Vec::new());
     }
-    mesh.weld(options.weld.unwrap_or(0.0));
     let mut notes: Vec<Note> = notes.into_iter().map(|message| Note { line: None, message }).collect();
     let mut note = |message: String| notes.push(Note { line: None, message });
-    if found.lines > 0 {
-        note(format!("{} lines are left out", found.lines));
+    if lines > 0 {
+        note(format!("{lines} lines are left out"));
     }
     let pictured: Vec<String> = file.document.materials().filter(pictured).map(|own| name_of(&own)).collect();
     if let Some(first) = pictured.first() {
@@ -78,7 +105,7 @@ fn finish(
         ));
     }
     let materials = file.document.materials().map(|own| look(&own)).collect();
-    Ok(Imported { mesh, materials, groups: names(file), notes })
+    Ok(Weighted { imported: Imported { mesh, materials, groups: names(file), notes }, weights })
 }
 
 /// Nodes whose meshes are read, in the order of the tree.
@@ -166,69 +193,29 @@ fn morphed(part: &Part, weights: &[f64]) -> Part {
     part
 }
 
-/// Where the vertices of a node's mesh stand in the scene.
-enum Stand {
-    /// All of them by one map.
-    Node(DAffine3),
-    /// By their joints, each from where it was bound to where it rests.
-    Joints(Vec<DAffine3>),
+/// Where a skin's mesh stands in the scene as it is bound: where its first joint, at rest, brings it.
+pub(super) fn bound(skin: &Skin, worlds: &[DMat4]) -> DAffine3 {
+    let first = skin.joints.first().zip(skin.inverse.first());
+    first.map_or(DAffine3::IDENTITY, |(joint, inverse)| affine(&(worlds[*joint] * *inverse)))
 }
 
-impl Stand {
-    fn new(
-        file: &GltfFile,
-        data: &Data<'_>,
-        node: &Node,
-        (worlds, own): (&[DMat4], DMat4),
-    ) -> Result<Self, GltfFault> {
-        let Some(skin) = node.skin.and_then(|skin| file.document.skins().nth(skin)) else {
-            return Ok(Self::Node(affine(&own)));
-        };
-        let skin = super::skin(data, &skin)?;
-        let joint = |(joint, inverse): (&usize, &DMat4)| affine(&(worlds[*joint] * *inverse));
-        Ok(Self::Joints(skin.joints.iter().zip(&skin.inverse).map(joint).collect()))
-    }
-
-    /// The map of a vertex.
-    fn of(&self, part: &Part, vertex: usize, mesh: usize) -> Result<DAffine3, GltfFault> {
-        let maps = match self {
-            Self::Node(map) => return Ok(*map),
-            Self::Joints(maps) => maps,
-        };
-        let (Some(joints), Some(shares)) = (part.joints.get(vertex), part.shares.get(vertex)) else {
-            return Ok(DAffine3::IDENTITY);
-        };
-        let (mut matrix, mut translation, mut sum) = (DMat3::ZERO, DVec3::ZERO, 0.0);
-        for (joint, share) in joints.iter().zip(shares).filter(|(_, share)| **share > 0.0) {
-            let map = maps.get(*joint as usize).ok_or(GltfFault::Joint(mesh, *joint))?;
-            let share = f64::from(*share);
-            matrix += map.matrix3 * share;
-            translation += map.translation * share;
-            sum += share;
-        }
-        Ok(if sum > 0.0 {
-            DAffine3::from_mat3_translation(matrix * (1.0 / sum), translation / sum)
-        } else {
-            DAffine3::IDENTITY
-        })
-    }
-}
-
-fn affine(matrix: &DMat4) -> DAffine3 {
+pub(super) fn affine(matrix: &DMat4) -> DAffine3 {
     DAffine3::from_mat4(*matrix)
 }
 
 /// What is read.
 struct Found {
     mesh: PolygonMesh,
+    /// For each point the nodes that carry it.
+    weights: Vec<Vec<(usize, f64)>>,
     lines: usize,
 }
 
 impl Found {
-    fn part(&mut self, part: &Part, stand: &Stand, mesh: usize) -> Result<(), GltfFault> {
+    fn part(&mut self, part: &Part, map: &DAffine3) {
         self.lines += part.lines.len();
         if part.triangles.is_empty() {
-            return Ok(());
+            return;
         }
         let first = index(self.mesh.points.len());
         let (first_uv, first_normal) = (index(self.mesh.uvs.len()), index(self.mesh.normals.len()));
@@ -238,11 +225,8 @@ impl Found {
         }
         let shade = |color: &[f32; 4]| Color::held(color.map(f64::from));
         self.mesh.colors.extend(part.colors.iter().map(shade));
-        let mut mirrored = Vec::with_capacity(part.positions.len());
+        let normals = NormalMap::new(&map.matrix3);
         for (vertex, position) in part.positions.iter().enumerate() {
-            let map = stand.of(part, vertex, mesh)?;
-            let normals = NormalMap::new(&map.matrix3);
-            mirrored.push(normals.mirrors);
             self.mesh.points.push(map.transform_point3(Vec3::from_array(*position).as_dvec3()));
             if let Some(normal) = part.normals.get(vertex) {
                 self.mesh
@@ -259,7 +243,7 @@ impl Found {
             if corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0] {
                 continue;
             }
-            if mirrored[corners[0] as usize] {
+            if normals.mirrors {
                 corners.swap(1, 2);
             }
             self.mesh.push_face(&[&corners.map(|corner| first + corner)], material, 0);
@@ -281,10 +265,63 @@ impl Found {
                         .is_some_and(|normal| normal.is_finite() && *normal != DVec3::ZERO);
                 if known { own } else { NONE }
             };
-            let normals = corners.map(normal);
-            self.mesh.corner_normals.extend(normals);
+            let named = corners.map(normal);
+            self.mesh.corner_normals.extend(named);
         }
+    }
+
+    /// The joints that carry the points of a part, which were added last.
+    fn carry(&mut self, part: &Part, skin: Option<&Skin>, mesh: usize) -> Result<(), GltfFault> {
+        let Some(skin) = skin.filter(|_| part.joints.len() == part.shares.len()) else {
+            self.weights.resize(self.mesh.points.len(), Vec::new());
+            return Ok(());
+        };
+        if part.triangles.is_empty() {
+            return Ok(());
+        }
+        for (joints, shares) in part.joints.iter().zip(&part.shares) {
+            let mut own: Vec<(usize, f64)> = Vec::new();
+            for (joint, share) in joints.iter().zip(shares).filter(|(_, share)| **share > 0.0) {
+                let node = *skin.joints.get(*joint as usize).ok_or(GltfFault::Joint(mesh, *joint))?;
+                match own.iter_mut().find(|(known, _)| *known == node) {
+                    Some((_, sum)) => *sum += f64::from(*share),
+                    None => own.push((node, f64::from(*share))),
+                }
+            }
+            own.sort_by_key(|(node, _)| *node);
+            self.weights.push(own);
+        }
+        self.weights.resize(self.mesh.points.len(), Vec::new());
         Ok(())
+    }
+
+    /// Joins points.
+    fn weld(&mut self, within: Option<f64>) {
+        if let Some(within) = within {
+            self.weights.clear();
+            self.mesh.weld(within);
+            return;
+        }
+        let welded = weld_equal(&self.mesh.points);
+        // For each place the points that stay there.
+        let mut kept: Vec<Vec<u32>> = vec![Vec::new(); welded.points.len()];
+        let (mut points, mut weights): (Vec<DVec3>, Vec<Vec<(usize, f64)>>) = (Vec::new(), Vec::new());
+        let mut map = Vec::with_capacity(self.mesh.points.len());
+        for (own, place) in self.weights.drain(..).zip(&welded.map) {
+            let here = &mut kept[*place as usize];
+            let alike = here.iter().copied().find(|point| weights[*point as usize] == own);
+            map.push(alike.unwrap_or_else(|| {
+                let new = index(points.len());
+                here.push(new);
+                points.push(welded.points[*place as usize]);
+                weights.push(own);
+                new
+            }));
+        }
+        for corner in &mut self.mesh.corners {
+            *corner = PointIndex(map[corner.subscript()]);
+        }
+        (self.mesh.points, self.weights) = (points, weights);
     }
 }
 

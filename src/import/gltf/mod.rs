@@ -8,8 +8,10 @@
 //! Source: Khronos Group, glTF 2.0 Specification, 2021.
 
 mod accessor;
+mod clip;
 mod geometry;
 mod mesh;
+mod rig;
 
 use std::borrow::Cow;
 
@@ -18,9 +20,11 @@ use gltf::json::validation::Validate as _;
 use thiserror::Error;
 
 pub(crate) use accessor::Data;
-pub use geometry::read;
+pub use clip::{Channel, ChannelPath, Clip, Steps, Track};
+pub use geometry::{Weighted, read, read_weighted};
 pub(crate) use mesh::read as mesh;
 pub use mesh::{Mesh, Part, Target};
+pub use rig::{Rig, RigJoint};
 
 use crate::packing::{UnpackError, unpacked};
 
@@ -114,6 +118,12 @@ pub enum GltfFault {
     /// A vertex is carried by a joint that its skin has not.
     #[error("mesh {0} is carried by joint {1}, which its skin does not have")]
     Joint(usize, u32),
+    /// Keys that do not follow each other in time, from 0 on.
+    #[error("the times of accessor {0} are not in order, or not from 0 on")]
+    Times(usize),
+    /// A joint that is bound by a matrix that cannot be undone, or in two ways.
+    #[error("node {0}, a joint, is bound {1}")]
+    Bound(usize, &'static str),
     /// An index of a mesh reaches past its vertices.
     #[error("mesh {0} uses vertex {1}, which does not exist")]
     Vertex(usize, u32),
@@ -198,6 +208,15 @@ impl GltfFile {
             Some(scene) => scene.nodes().map(|node| node.index()).collect(),
             None => (0..self.parents.len()).filter(|node| self.parents[*node].is_none()).collect(),
         }
+    }
+
+    /// All clips.
+    ///
+    /// # Errors
+    /// When one of them is broken.
+    pub fn clips(&self) -> Result<Vec<Clip>, GltfFault> {
+        let data = self.data();
+        self.document.animations().map(|own| clip::read(&data, &own)).collect()
     }
 
     /// For each node the map from it to the scene.

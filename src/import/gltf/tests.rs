@@ -1,7 +1,7 @@
 use glam::DVec3;
 use serde_json::{Value, json};
 
-use super::{GltfFault, base64, read, unescaped};
+use super::{GltfFault, Place, Steps, Track, base64, open, read, read_weighted, unescaped};
 use crate::import::{ImportError, ImportOptions, Imported};
 
 /// A square of four points at z = 0 as floats, the bytes of a strip of them, weights of all on the first of four joints,
@@ -143,7 +143,7 @@ fn sparse_and_whole_numbers_are_read() {
 }
 
 #[test]
-fn skinned_meshes_stand_as_their_joints_rest() {
+fn skinned_meshes_stand_where_their_first_joint_rests() {
     // Without matrices joints are bound at the origin.
     let found = read_all(|document| {
         document["accessors"].as_array_mut().expect("a list").extend([
@@ -163,6 +163,113 @@ fn skinned_meshes_stand_as_their_joints_rest() {
     // The twin's own scale does not count: it stands where the arm does.
     let bounds = found.bounds();
     assert_eq!((bounds.min, bounds.max), (DVec3::Z * 5.0, DVec3::new(2.0, 1.0, 5.0)));
+}
+
+/// The square, carried by its first joint, which stands 5 before the scene's origin, or by both of two.
+fn skinned(document: &mut Value) {
+    document["accessors"].as_array_mut().expect("a list").extend([
+        json!({ "bufferView": 2, "byteOffset": 4, "componentType": 5121, "type": "VEC4", "count": 4 }),
+        json!({ "bufferView": 2, "componentType": 5126, "type": "VEC4", "count": 4 }),
+    ]);
+    document["skins"] = json!([{ "joints": [0, 1] }]);
+    let attributes = &mut document["meshes"][0]["primitives"][0]["attributes"];
+    attributes["JOINTS_0"] = 2.into();
+    attributes["WEIGHTS_0"] = 3.into();
+    document["nodes"][2]["skin"] = 0.into();
+    document["nodes"][1].as_object_mut().expect("an object").remove("mesh");
+}
+
+#[test]
+fn rigs_have_joints_with_what_is_between_them() {
+    let with = |change: &dyn Fn(&mut Value)| {
+        let bytes = document(|document| {
+            skinned(document);
+            change(document);
+        });
+        open(&bytes, &mut |_| Some(square())).expect("a file").rig()
+    };
+    let rig = with(&|_| {}).expect("a rig");
+    let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
+    assert_eq!((names.as_slice(), rig.joints[1].parent), (&["arm", "hand"][..], Some(0)));
+    // Without matrices both are bound where the mesh is, which stands as the first one rests.
+    assert!(
+        rig.joints.iter().all(|joint| joint.bind.translation == DVec3::Z * 5.0 && joint.between.is_empty())
+    );
+    assert!(matches!(rig.joints[0].rest, Place::Parts { translation, .. } if translation == DVec3::Z * 5.0));
+    // A node between two joints belongs to neither, and moves what is behind it.
+    let rig = with(&|document| {
+        document["nodes"]
+            .as_array_mut()
+            .expect("a list")
+            .push(json!({ "children": [1], "translation": [0, 3, 0] }));
+        document["nodes"][0]["children"] = json!([3]);
+    });
+    let hand = &rig.expect("a rig").joints[1];
+    assert_eq!(
+        (hand.parent, hand.between.as_slice(), hand.before.translation),
+        (Some(0), &[3][..], DVec3::Y * 3.0)
+    );
+    // A second skin that binds a joint elsewhere.
+    let fault = with(&|document| {
+        document["skins"].as_array_mut().expect("a list").push(json!({ "joints": [2, 0] }));
+    });
+    assert!(matches!(fault, Err(GltfFault::Bound(0, _))), "{fault:?}");
+}
+
+#[test]
+fn points_on_one_place_with_other_weights_stay_apart() {
+    let weighted = |triangles: bool| {
+        let bytes = document(|document| {
+            skinned(document);
+            document["scenes"][0]["nodes"] = json!([0, 2]);
+            if triangles {
+                // The mesh once more: the same points with the same weights.
+                let twice = document["meshes"][0]["primitives"][0].clone();
+                document["meshes"][0]["primitives"].as_array_mut().expect("a list").push(twice);
+            }
+        });
+        read_weighted(&bytes, &ImportOptions::default(), &mut |_| Some(square())).expect("a mesh")
+    };
+    for twice in [false, true] {
+        let found = weighted(twice);
+        assert_eq!((found.imported.mesh.points.len(), found.weights.len()), (4, 4));
+        assert!(found.weights.iter().all(|own| own == &[(0, 1.0)]), "{:?}", found.weights);
+    }
+}
+
+#[test]
+fn clips_are_read_and_their_times_are_in_order() {
+    let clip = |times: [f32; 4], interpolation: &str| {
+        let bytes = document(|document| {
+            document["buffers"][0]["byteLength"] = 148.into();
+            document["bufferViews"]
+                .as_array_mut()
+                .expect("a list")
+                .push(json!({ "buffer": 0, "byteOffset": 132, "byteLength": 16 }));
+            document["accessors"].as_array_mut().expect("a list").push(
+                json!({ "bufferView": 4, "componentType": 5126, "type": "SCALAR", "count": 4, "min": [0], "max": [9] }));
+            document["animations"] = json!([{ "name": "wave",
+                "channels": [{ "sampler": 0, "target": { "node": 1, "path": "translation" } }],
+                "samplers": [{ "input": 2, "output": 0, "interpolation": interpolation }],
+            }]);
+        });
+        let mut data = square();
+        data.extend(times.into_iter().flat_map(f32::to_le_bytes));
+        open(&bytes, &mut |_| Some(data.clone())).expect("a file").clips()
+    };
+    let clips = clip([0.0, 0.5, 1.0, 9.0], "LINEAR").expect("clips");
+    assert_eq!((clips[0].name.as_str(), clips[0].duration()), ("wave", 9.0));
+    assert!(
+        matches!(&clips[0].channels[0].track, Track::Translation(values) if values[1] == [2.0, 0.0, 0.0])
+    );
+    assert_eq!(clips[0].channels[0].steps, Steps::Linear);
+    for times in
+        [[0.0, 0.5, 0.5, 1.0], [1.0, 0.5, 2.0, 3.0], [-1.0, 0.0, 1.0, 2.0], [0.0, f32::NAN, 1.0, 2.0]]
+    {
+        assert_eq!(clip(times, "STEP").expect_err("times"), GltfFault::Times(2), "{times:?}");
+    }
+    // Cubics have three rows for each key.
+    assert_eq!(clip([0.0, 0.5, 1.0, 9.0], "CUBICSPLINE").expect_err("rows"), GltfFault::Accessor(0));
 }
 
 #[test]

@@ -425,6 +425,8 @@ codes! {
 
     /// a part of a skin by heat that sees no bone
     UnseenBones = "K0992";
+    /// a motion of a file that stretches joints unevenly
+    StretchedMotion = "K0993";
 
     /// a collider that belongs to no node
     ColliderPlace = "K0994";

@@ -54,10 +54,13 @@ table! {
 
 table! {
     /// The motion of a BVH file, for a skeleton whose joints have the names of the file's in kebab-case and stand at rest as
-    /// they do there; or that of an MD5 motion (`.md5anim`), for a skeleton from an MD5 mesh of the same joints.
+    /// they do there; that of an MD5 motion (`.md5anim`), for a skeleton from an MD5 mesh of the same joints; or an animation of
+    /// a glTF file, for a skeleton of joints of the same names.
     "motion import" pub MotionImport {
         /// The file; the path is relative to this document and stays inside the project.
         file: Sp<FilePath>;
+        /// Which animation of a glTF file, by its name there; the first when it is not written.
+        animation: Option<Sp<String>>;
         /// What one unit of the file is in the document's unit; as the skeleton's import has it when it is not written.
         scale: Option<Sp<f64>> => Check::above(0.0);
         /// The axis that points up in the file; as the skeleton's import has it when it is not written.

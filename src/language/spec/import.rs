@@ -25,7 +25,7 @@ pub struct FilePath {
 }
 
 table! {
-    /// A model from a file: glTF (.glb or .gltf, as its nodes place its meshes, skinned ones as they rest), Wavefront OBJ, STL, PLY,
+    /// A model from a file: glTF (.glb or .gltf, as its nodes place its meshes, skinned ones as they are bound), Wavefront OBJ, STL, PLY,
     /// the faces of a drawing (DXF), the meshes of a 3D Studio scene (3DS) with its materials and smoothing groups, a Doom 3
     /// mesh (MD5), or a Quake model (MD2, MD3), whose frames become morphs of the shape where a node shows it, with a name each,
     /// and whose sequences become clips. The tags of an MD3 file are nodes with their names in kebab-case, which move with the

@@ -36,9 +36,9 @@ table! {
 }
 
 table! {
-    /// The joints of a BVH file or of an MD5 mesh. Their names are written in kebab-case: `LeftUpLeg` is `left-up-leg`. Bones run
-    /// to end sites or to the middle of the joints they carry. Where several joints of a mesh have no parent, a joint `root` at
-    /// the origin carries them.
+    /// The joints of a BVH file, of an MD5 mesh, or of the skins of a glTF file, which stand as their meshes are bound. Their
+    /// names are written in kebab-case: `LeftUpLeg` is `left-up-leg`. Bones run to end sites or to the middle of the joints
+    /// they carry. Where several joints have no parent, a joint `root` at the origin carries them.
     "skeleton import" pub SkeletonImport {
         /// The file; the path is relative to this document and stays inside the project.
         file: Sp<FilePath>;

@@ -41,7 +41,7 @@ choices! {
         Heat = "heat";
         /// By the formulas of `weight`.
         Explicit = "explicit";
-        /// Those of the file of the shape, which is an MD5 mesh. Its joints are found by their names in kebab-case.
+        /// Those of the file of the shape, which is a glTF file with a skin or an MD5 mesh. Its joints are found by their names in kebab-case.
         Imported = "imported";
     }
 }

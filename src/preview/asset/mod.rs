@@ -5,18 +5,18 @@
 //! and named in `notes`.
 //! No promise: this is not the reader of the report, which reads what it measures bit by bit (`gltf::read`).
 
-mod clip;
 mod level;
 mod texture;
 
 use glam::{DAffine2, DMat2, DVec2};
 
-pub use clip::{Channel, Clip, Steps, Track};
 pub use texture::{Texture, Wrap};
 
 use crate::geometry::number::{floor_count, sin_cos, single};
 use crate::import::gltf;
-pub use crate::import::gltf::{GltfFault, Mesh, Node, Part, Place, Skin, Target};
+pub use crate::import::gltf::{
+    Channel, Clip, GltfFault, Mesh, Node, Part, Place, Skin, Steps, Target, Track,
+};
 
 /// A file, read.
 #[derive(Clone, Debug, Default)]
@@ -113,7 +113,7 @@ pub fn read(bytes: &[u8]) -> Result<Asset, GltfFault> {
         skins: document.skins().map(|own| gltf::skin(&data, &own)).collect::<Result<_, _>>()?,
         materials,
         textures: texture::read(&data, &mut notes),
-        clips: document.animations().map(|own| clip::read(&data, &own)).collect::<Result<_, _>>()?,
+        clips: file.clips()?,
         notes,
     };
     check_levels(&asset)?;

@@ -2,11 +2,10 @@
 //!
 //! Source: Khronos Group, glTF 2.0 Specification, 2021, section 3.11 and appendix C (interpolation).
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec3, DVec4};
 
-use super::{GltfFault, Node, Place};
+use super::{Data, GltfFault, Node, Place};
 use crate::geometry::number::{acos, sin};
-use crate::import::gltf::Data;
 
 /// A clip.
 #[derive(Clone, Debug)]
@@ -54,6 +53,19 @@ pub enum Track {
     Weights(Vec<f32>),
 }
 
+/// What a channel moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChannelPath {
+    /// Moves.
+    Translation,
+    /// Turns.
+    Rotation,
+    /// Scales.
+    Scale,
+    /// Weights of morph targets.
+    Weights,
+}
+
 pub(super) fn read(data: &Data<'_>, own: &gltf::Animation<'_>) -> Result<Clip, GltfFault> {
     use gltf::animation::Property;
     let channels: Result<Vec<Channel>, GltfFault> = own
@@ -88,11 +100,41 @@ pub(super) fn read(data: &Data<'_>, own: &gltf::Animation<'_>) -> Result<Clip, G
             if !fits {
                 return Err(GltfFault::Accessor(output.index()));
             }
-            let times = times.into_iter().map(|[time]| time).collect();
+            let times: Vec<f32> = times.into_iter().map(|[time]| time).collect();
+            let ordered = times.is_sorted_by(|a, b| a < b) && times.iter().all(|time| time.is_finite());
+            if !ordered || times.first().is_some_and(|first| *first < 0.0) {
+                return Err(GltfFault::Times(sampler.input().index()));
+            }
             Ok(Channel { node: channel.target().node().index(), times, steps, track })
         })
         .collect();
     Ok(Clip { name: own.name().unwrap_or_default().to_owned(), channels: channels? })
+}
+
+impl Channel {
+    /// Which part of its node it moves.
+    #[must_use]
+    pub fn path(&self) -> ChannelPath {
+        match self.track {
+            Track::Translation(_) => ChannelPath::Translation,
+            Track::Rotation(_) => ChannelPath::Rotation,
+            Track::Scale(_) => ChannelPath::Scale,
+            Track::Weights(_) => ChannelPath::Weights,
+        }
+    }
+
+    /// Its keys as four numbers each, of which a move or a scale has three; none of weights.
+    #[must_use]
+    pub fn numbers(&self) -> Vec<DVec4> {
+        let three = |[x, y, z]: &[f32; 3]| DVec4::new((*x).into(), (*y).into(), (*z).into(), 0.0);
+        match &self.track {
+            Track::Translation(values) | Track::Scale(values) => values.iter().map(three).collect(),
+            Track::Rotation(values) => {
+                values.iter().map(|value| DVec4::from_array(value.map(f64::from))).collect()
+            }
+            Track::Weights(_) => Vec::new(),
+        }
+    }
 }
 
 impl Clip {
