@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 TOOL = "blender"
+# What the importer makes to show colors of vertices without a material.
+STAND_IN = "DefaultMaterial"
 
 
 def measure(path: Path) -> finding.Measured:
@@ -31,7 +33,7 @@ def measure(path: Path) -> finding.Measured:
     totals = {
         "meshes": len(meshes),
         "nodes": count_nodes() - len(document.carriers),
-        "materials": len(bpy.data.materials),
+        "materials": sum(not own.name.startswith(STAND_IN) for own in bpy.data.materials),
         "images": len(bpy.data.images),
         "bounds": box(
             item.matrix_world @ vertex.co

@@ -147,7 +147,7 @@ def compare(asset: str, report: Facts, measured: list[Measured]) -> list[Finding
             totals |= {fact: value for fact, value in other.totals.items() if fact == DRAWN}
         profile = report.get("profile", "core")
         findings += facts(asset, ("totals", profile), totals, one.tool, expected(report, one.totals))
-        findings += shapes(asset, (claimed, profile), one)
+        findings += shapes(asset, (claimed, profile, set(report.get("colliders", {})) - set(claimed)), one)
         findings += nodes(asset, report, one)
         findings += clips(asset, report, one)
         findings += levels(asset, report, one)
@@ -192,11 +192,14 @@ def with_counted(claimed: dict[str, Facts], measured: list[Measured]) -> dict[st
     return {name: {**claims, **counted[name]} for name, claims in claimed.items()}
 
 
-def shapes(asset: str, told: tuple[dict[str, Facts], str], one: Measured) -> Iterator[Finding]:
-    """The findings of one tool about the shapes of a file of a profile; both sides must name the same ones."""
-    claimed, profile = told
+def shapes(asset: str, told: tuple[dict[str, Facts], str, set[str]], one: Measured) -> Iterator[Finding]:
+    """The findings of one tool about the shapes of a file of a profile; both sides must name the same ones.
+
+    Meshes that are bodies for physics are no shapes.
+    """
+    claimed, profile, bodies = told
     if one.shapes:
-        names, found = sorted(claimed), sorted(one.shapes)
+        names, found = sorted(claimed), sorted(set(one.shapes) - bodies)
         yield Finding(asset, "shapes", one.tool, names, found, differs(names, found), 0.0)
     for name in sorted(set(claimed) & set(one.shapes)):
         yield from facts(asset, (f"shapes.{name}", profile), claimed[name], one.tool, one.shapes[name])

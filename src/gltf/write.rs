@@ -33,6 +33,8 @@ pub struct Written {
     pub animations: Vec<WrittenAnimation>,
     /// Bodies for physics.
     pub colliders: Vec<Collider>,
+    /// The meshes of the file that are such bodies.
+    pub collider_meshes: std::ops::Range<usize>,
     /// The levels of detail of each mesh that has some, the finest first.
     pub levels: Vec<Vec<WrittenLevel>>,
 }
@@ -169,8 +171,10 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
         |level: &LevelUse| WrittenLevel { level: *level, geometry: scene.meshes[level.mesh].geometry };
     let levels = scene.meshes.iter().filter(|mesh| !mesh.levels.is_empty());
     let levels = levels.map(|mesh| mesh.levels.iter().map(written).collect()).collect();
+    let collider_meshes = scene.meshes.len()..writer.root.meshes.len();
     Ok(Written {
         bytes: writer.finish()?,
+        collider_meshes,
         geometries,
         animations,
         colliders: scene.colliders.clone(),

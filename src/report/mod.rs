@@ -457,6 +457,11 @@ fn totals(
             totals.vertices += lines.vertices;
         }
     }
+    for body in &file.geometries[written.collider_meshes.clone()] {
+        totals.primitives += body.parts.len();
+        totals.triangles += body.indices.len() as u64 / 3;
+        totals.vertices += body.positions.len() as u64;
+    }
     let mut bounds = Bounds::EMPTY;
     for (node, facts) in file.root.nodes.iter().zip(nodes) {
         let Some(mesh) = node.mesh else { continue };

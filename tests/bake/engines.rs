@@ -60,6 +60,16 @@ fn files_require_what_their_engine_reads() {
             if level > 0 {
                 assert_eq!(file.file, format!("asset.lod{level}.{name}.glb"));
             }
+            let primitives: Vec<&Value> = (json["meshes"].as_array().expect("meshes").iter())
+                .flat_map(|mesh| mesh["primitives"].as_array().expect("primitives"))
+                .collect();
+            let corners = |primitive: &&Value| {
+                let accessor = primitive["indices"].as_u64().and_then(|index| usize::try_from(index).ok());
+                json["accessors"][accessor.expect("indices")]["count"].as_u64().expect("a count")
+            };
+            let totals = &file.report.as_ref().expect("a report was asked for").totals;
+            assert_eq!(totals.primitives, primitives.len(), "{name}: bodies are counted too");
+            assert_eq!(totals.triangles, primitives.iter().map(corners).sum::<u64>() / 3, "{name}");
             let nodes = json["nodes"].as_array().expect("nodes");
             let named = |wanted: &str| nodes.iter().any(|node| node["name"] == wanted);
             assert_eq!(named("c-convcolonly"), profile == Profile::Godot, "{name}");

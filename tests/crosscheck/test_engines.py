@@ -36,6 +36,8 @@ vertex-color = { colors = ["#402010", "#ffe0a0"], by = "= y" }
 [shape.shade.revolve]
 profile = { bezier = { points = [[0.3, 0], [0.4, 0.3], [0.2, 0.6], [0.1, 0.8]] } }
 caps = false
+[shape.arm]
+vertex-color = "#806040"
 [shape.arm.capsule]
 radius = 0.08
 height = 1.2
@@ -84,7 +86,7 @@ def test_files_hold_to_the_rules_of_loaders(kiln: Kiln) -> None:
 
 
 def test_every_tool_takes_the_files_of_every_engine(kiln: Kiln) -> None:
-    kiln.bake(LAMP, *PROFILES)
+    kiln.bake(LAMP + BODY, *PROFILES)
     done = subprocess.run(
         [sys.executable, str(VERIFY), str(kiln.folder / "out")], capture_output=True, text=True, check=False
     )
