@@ -116,7 +116,9 @@ def worlds(graph: bpy.types.Depsgraph) -> dict[str, list[float]]:
     found = {}
     for item in bpy.context.scene.objects:
         evaluated = item.evaluated_get(graph)
-        found[item.name] = flat(TO_GLTF @ evaluated.matrix_world @ FROM_GLTF)
+        # Cameras and lights look along their own -z in both.
+        own = Matrix.Identity(4) if item.type in ("CAMERA", "LIGHT") else FROM_GLTF
+        found[item.name] = flat(TO_GLTF @ evaluated.matrix_world @ own)
     for item in bpy.context.scene.objects:
         if item.type == "ARMATURE":
             evaluated = item.evaluated_get(graph)

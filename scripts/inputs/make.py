@@ -7,7 +7,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from inputs import beetle, bird, caterpillar, crate, label, lamp, plate
+from inputs import beetle, bird, caterpillar, crate, label, lamp, plate, windmill
 
 SPECS = Path(__file__).resolve().parents[2] / "specs" / "inputs"
 
@@ -23,6 +23,7 @@ def main() -> None:
     (folder / "bird.obj").write_text(bird.obj(), encoding="utf-8")
     (folder / "caterpillar.md2").write_bytes(caterpillar.md2())
     (folder / "beetle.md3").write_bytes(beetle.md3())
+    (folder / "windmill.3ds").write_bytes(windmill.studio())
     (folder / "plate.dxf").write_text(plate.dxf(), encoding="utf-8")
     (folder / "lamp.md5mesh").write_text(lamp.md5mesh(), encoding="utf-8")
     (folder / "lamp-bow.md5anim").write_text(lamp.md5anim(), encoding="utf-8")

@@ -150,6 +150,8 @@ impl<'a> Builder<'a> {
                     parent: Some(parent),
                     socket: None,
                     is_socket: true,
+                    camera: None,
+                    light: None,
                     translation,
                     rotation,
                     scale: DVec3::ONE,

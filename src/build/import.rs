@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
+use indexmap::IndexMap;
 
 use super::Builder;
 use crate::geometry::mesh;
@@ -10,7 +11,7 @@ use crate::import::keyframes::Keyframes;
 use crate::import::{self, ImportError, ImportOptions, Imported, MaterialLook, Note};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::{FileError, Files, Span, join};
-use crate::language::spec::{FilePath, Import, Sp, Up};
+use crate::language::spec::{FilePath, Import, MaterialName, Sp, Up};
 use crate::model::{AlphaMode, Material, MaterialHandle, Recipe};
 
 /// The rotation from a file's axes to a document's.
@@ -210,14 +211,21 @@ impl Builder<'_> {
                 return None;
             }
         }
-        let mut handles = Vec::new();
-        for (index, name) in names.iter().enumerate() {
-            handles.push(match import.materials.get(name) {
-                Some(target) => Some(self.material(&target.value.0)?),
-                None => imported.materials.get(index).and_then(|look| self.look(look)),
-            });
-        }
-        Some(handles)
+        Some(self.looks_of(&import.materials, imported))
+    }
+
+    /// For each material of a file one of the model: as the document says, else as the file says. One that could not be
+    /// built was told.
+    pub(super) fn looks_of(
+        &mut self,
+        written: &IndexMap<String, Sp<MaterialName>>,
+        imported: &Imported,
+    ) -> Vec<Option<MaterialHandle>> {
+        let look = |(index, name): (usize, &String)| match written.get(name) {
+            Some(target) => self.material(&target.value.0),
+            None => imported.materials.get(index).and_then(|look| self.look(look)),
+        };
+        imported.mesh.materials.iter().enumerate().map(look).collect()
     }
 
     /// A material as a material library describes it; `None` where it says nothing of its look.

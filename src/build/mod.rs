@@ -51,6 +51,7 @@ mod quadric;
 mod reach;
 mod ruled;
 mod scaling;
+mod scene;
 mod shape;
 mod skeleton;
 mod skin;
@@ -246,6 +247,8 @@ impl<'a> Builder<'a> {
     fn build_motion(&mut self, states: &[StateModel]) {
         self.skeletons();
         self.nodes();
+        self.scenes();
+        self.check_shown_nodes();
         let played = self.frames();
         self.attach_nodes();
         self.skins();

@@ -14,6 +14,10 @@ impl Builder<'_> {
         } else {
             self.written_nodes();
         }
+    }
+
+    /// Tells of a document that shows nothing, once all nodes are there.
+    pub(super) fn check_shown_nodes(&mut self) {
         let shows = self.model.nodes.iter().any(|node| node.shape.is_some());
         if !shows
             && self
@@ -39,6 +43,8 @@ impl Builder<'_> {
                 parent: None,
                 socket: None,
                 is_socket: false,
+                camera: None,
+                light: None,
                 translation: DVec3::ZERO,
                 rotation: DQuat::IDENTITY,
                 scale: DVec3::ONE,
@@ -60,6 +66,8 @@ impl Builder<'_> {
                 parent,
                 socket: None,
                 is_socket: false,
+                camera: None,
+                light: None,
                 translation: node.at.value,
                 rotation: rotation(node.rotate.value),
                 scale: node.scale.value.0,

@@ -37,6 +37,8 @@ pub(super) fn hold(scene: &mut Scene, form: spec::ColliderForm) {
             mesh: None,
             skin: None,
             socket: false,
+            camera: None,
+            light: None,
             parent: Some(collider.node),
             translation: collider.translation,
             rotation: collider.rotation,

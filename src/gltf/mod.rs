@@ -19,6 +19,7 @@ mod profile;
 mod read;
 mod read_morph;
 mod read_motion;
+mod view;
 mod write;
 
 pub use carrier::ReadLevels;

@@ -14,7 +14,7 @@ use super::buffer::{Binary, Content, Elements, at, index_accessors, index_width}
 use super::color::colors;
 use super::position::positions;
 use super::profile::Profile;
-use super::{carrier, collider, duplicate, lines, material, morph, motion};
+use super::{carrier, collider, duplicate, lines, material, morph, motion, view};
 use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
 use crate::geometry::number::{floor_count, size};
@@ -347,6 +347,7 @@ impl Writer {
             };
             scene.nodes.iter().enumerate().filter_map(of).collect()
         };
+        let mut lights = view::lights(&mut self.root, scene);
         let mut bodies = collider::write(&mut self.root, &mut self.binary, scene);
         for (index, node) in scene.nodes.iter().enumerate() {
             let mut below = children(Some(index));
@@ -361,8 +362,13 @@ impl Writer {
             let plain = |vector: glam::DVec3, rest: glam::DVec3| {
                 (vector != rest).then(|| vector.as_vec3().to_array())
             };
+            if let Some(light) = lights[index].take() {
+                let others = &mut extensions.get_or_insert_default().others;
+                others.insert(view::LIGHTS.to_owned(), light);
+            }
+            let camera = node.camera.map(|camera| self.root.push(view::camera(&node.name, &camera)));
             self.root.push(Node {
-                camera: None,
+                camera,
                 children: (!below.is_empty()).then_some(below),
                 extensions,
                 extras: extras(node, levels, body.extras),

@@ -13,6 +13,7 @@ mod shape;
 mod solid;
 mod subdivide;
 mod vertex_color;
+mod view;
 
 pub use collider::{Collider, Fit};
 pub use deform::{AxialBending, Bending, PathBending};
@@ -29,6 +30,7 @@ pub use shape::{Density, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, Uv
 pub use solid::{Hollow, KeptSide, PlaneCut, SolidOperation, SolidRecipe};
 pub use subdivide::SubdivisionRecipe;
 pub use vertex_color::{ColorLaw, VertexColor};
+pub use view::{Camera, Light, LightKind};
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
@@ -85,6 +87,10 @@ pub struct Node {
     pub socket: Option<SocketHandle>,
     /// Whether it is itself a place to attach things to.
     pub is_socket: bool,
+    /// The camera that looks along its -z from there.
+    pub camera: Option<Camera>,
+    /// The light that shines from there, along its -z if it is a spot.
+    pub light: Option<Light>,
     /// Applied last.
     pub translation: DVec3,
     /// Applied second.

@@ -126,6 +126,21 @@ pub struct ShapeOptions {
     pub placement: DAffine3,
 }
 
+impl ShapeOptions {
+    /// What holds where nothing is written.
+    pub const PLAIN: Self = Self {
+        tolerance: None,
+        density: None,
+        smoothing: Smoothing::Auto,
+        crease_angle: 30.0,
+        uv: UvMode::Auto,
+        uv_scale: DVec2::ONE,
+        material: None,
+        vertex_color: None,
+        placement: DAffine3::IDENTITY,
+    };
+}
+
 /// Steps of a fixed grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Density {

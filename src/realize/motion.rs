@@ -84,6 +84,8 @@ fn node(name: String, parent: Option<usize>, place: &Transform) -> Node {
         mesh: None,
         skin: None,
         socket: false,
+        camera: None,
+        light: None,
         parent,
         translation: place.translation,
         rotation: place.rotation,

@@ -185,6 +185,8 @@ fn nodes(model: &Model, shown: &[Shown]) -> Vec<Node> {
             mesh: place(node),
             skin: None,
             socket: node.is_socket,
+            camera: node.camera,
+            light: node.light,
             parent: node.parent,
             translation: axes * node.translation * model.frame.unit,
             rotation: (turn * node.rotation * turn.conjugate()).normalize(),

@@ -8,7 +8,7 @@ mod motion;
 
 use crate::geometry::mesh::{Color, VertexIndex};
 
-use super::{Collider, Geometry, MeshUse, Node, Scene};
+use super::{Camera, Collider, Geometry, Light, LightKind, MeshUse, Node, Scene};
 
 /// A scene that holds what glTF demands. Made only by [`check`].
 #[derive(Clone, Copy, Debug)]
@@ -83,6 +83,9 @@ pub enum SceneError {
     /// A collider is not finite, or without extent.
     #[error("collider `{0}` has a size or a place that is beyond single precision")]
     Collider(String),
+    /// A camera or light that cannot be written.
+    #[error("node `{0}` has a {1} that glTF cannot hold")]
+    View(String, &'static str),
     /// A node's transform is not finite, or its rotation not of unit length.
     #[error("node `{0}` has a transform that glTF cannot hold")]
     Transform(String),
@@ -106,10 +109,33 @@ pub fn check(scene: &Scene) -> Result<Checked<'_>, SceneError> {
     }
     for (index, node) in scene.nodes.iter().enumerate() {
         check_node(scene, index, node)?;
+        check_view(node)?;
     }
     scene.colliders.iter().try_for_each(|collider| check_collider(scene, collider))?;
     motion::check(scene)?;
     Ok(Checked { scene })
+}
+
+fn check_view(node: &Node) -> Result<(), SceneError> {
+    let held = |value: f64| value > 0.0 && value <= f64::from(f32::MAX);
+    if let Some(Camera { upright, aspect, near, far }) = node.camera {
+        let sees = upright > 0.0 && upright < 180.0 && held(aspect) && held(near);
+        if !sees || far.is_some_and(|far| !held(far) || far <= near) {
+            return Err(SceneError::View(node.name.clone(), "camera"));
+        }
+    }
+    if let Some(Light { kind, color, intensity, range }) = node.light {
+        let lit =
+            color.iter().all(|part| (0.0..=1.0).contains(part)) && (intensity == 0.0 || held(intensity));
+        let cone = match kind {
+            LightKind::Point => true,
+            LightKind::Spot { inner, outer } => inner >= 0.0 && inner < outer && outer <= 90.0,
+        };
+        if !lit || !cone || range.is_some_and(|range| !held(range)) {
+            return Err(SceneError::View(node.name.clone(), "light"));
+        }
+    }
+    Ok(())
 }
 
 fn check_collider(scene: &Scene, collider: &Collider) -> Result<(), SceneError> {

@@ -13,7 +13,9 @@ pub use collider::{Body, Collider, ColliderForm};
 pub use morph::MorphTarget;
 pub use motion::{Animation, Channel, Skin};
 
-pub use crate::model::{AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, Texture, Wrap};
+pub use crate::model::{
+    AlphaMode, Camera, Filter, Image, ImageHandle, ImageKind, Light, LightKind, Material, Texture, Wrap,
+};
 
 use glam::{DQuat, DVec3};
 
@@ -155,6 +157,10 @@ pub struct Node {
     pub skin: Option<usize>,
     /// Whether it is a place to attach things to.
     pub socket: bool,
+    /// The camera that looks along its -z from there.
+    pub camera: Option<Camera>,
+    /// The light that shines from there, along its -z if it is a spot.
+    pub light: Option<Light>,
     /// Index of the parent.
     pub parent: Option<usize>,
     /// Applied last, metres.

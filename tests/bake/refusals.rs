@@ -36,6 +36,7 @@ fn with_broken(files: MemoryFiles) -> MemoryFiles {
         .with("caterpillar.md2", CATERPILLAR)
         .with("half.md2", &CATERPILLAR[..CATERPILLAR.len() / 2])
         .with("bird.md2", include_str!("../../specs/inputs/bird.obj"))
+        .with("windmill.3ds", include_bytes!("../../specs/inputs/windmill.3ds").as_slice())
         .with("plate.dxf", PLATE)
         .with("half.dxf", &PLATE[..PLATE.find(" 40\n10").expect("an arc") + 4])
         .with("bird.3ds", include_str!("../../specs/inputs/bird.obj"))
@@ -112,4 +113,26 @@ fn paths_that_wind_many_times_are_followed() {
             assert!(measured <= deviation.bound, "{turns} {segments}: {deviation:?}");
         }
     }
+}
+
+/// Whichever bit of a scene is wrong: it is baked or refused.
+#[test]
+fn scenes_with_flipped_bits_are_baked_or_refused() {
+    let whole: &[u8] = include_bytes!("../../specs/inputs/windmill.3ds");
+    let text = "[node.mill.import]\nfile = \"mill.3ds\"\n";
+    let (mut baked, mut refused) = (0, 0);
+    for at in (0..whole.len()).step_by(17) {
+        let mut bytes = whole.to_vec();
+        bytes[at] ^= 1 << (at % 8);
+        let files = MemoryFiles::new().with("case.toml", text).with("mill.3ds", bytes);
+        let document = Document::load("case.toml", &files).expect("a document");
+        match kiln::compile(&document, &files, &Options::default()) {
+            Ok(_) => baked += 1,
+            Err(found) => {
+                assert!(!found.is_empty(), "byte {at}");
+                refused += 1;
+            }
+        }
+    }
+    assert!(baked > 50 && refused > 20, "{baked} {refused}");
 }

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
 import struct
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import assimp
@@ -10,10 +12,12 @@ import numpy as np
 import pymeshlab
 import pytest
 
-if TYPE_CHECKING:
-    from pathlib import Path
+from checks import played
 
-    from kiln import Kiln
+if TYPE_CHECKING:
+    from kiln import Baked, Kiln
+
+INPUTS = Path(__file__).resolve().parents[2] / "specs" / "inputs"
 
 
 def ball(path: Path) -> pymeshlab.MeshSet:
@@ -106,3 +110,92 @@ def test_a_file_that_is_cut_off_is_refused(kiln: Kiln) -> None:
     assert done.returncode == 1
     assert "error[K0851]" in done.stderr
     assert "chunk 0x4d4d" in done.stderr
+
+
+def windmill(kiln: Kiln) -> Baked:
+    """The gallery's own scene."""
+    shutil.copy(INPUTS / "windmill.3ds", kiln.folder / "windmill.3ds")
+    return kiln.bake('[node.mill.import]\nfile = "windmill.3ds"\nloop = true\n', name="windmill")
+
+
+def pose(made: Baked, time: float, *names: str) -> list[np.ndarray]:
+    """Matrices of nodes at a time."""
+    clip = made.document.json["animations"][0]
+    found = played.Stage(made.document).pose(clip, {"time": time, "nodes": list(names), "vertices": {}})
+    return [np.array(found["nodes"][name]).reshape(4, 4).T for name in names]
+
+
+def test_a_scene_stands_as_assimp_reads_it(kiln: Kiln) -> None:
+    """At its first frame: as many triangles, each vertex near one of assimp's."""
+    made = windmill(kiln)
+    other = assimp.triangles(kiln.folder / "windmill.3ds")
+    names = ("tower", "cap", "rotor", "lantern-shown")
+    matrices = dict(zip(names, pose(made, 0.0, *names), strict=True))
+    points, count = [], 0
+    for mesh in made.document.meshes:
+        node = mesh.name.removeprefix("mill.")
+        matrix = matrices.get(node, matrices["lantern-shown"])
+        points.append(mesh.positions @ matrix[:3, :3].T + matrix[:3, 3])
+        count += len(mesh.triangles)
+    assert count == len(other)
+    wanted = other.reshape(-1, 3)
+    for place in np.concatenate(points)[::3]:
+        assert np.linalg.norm(wanted - place, axis=1).min() < 1e-4, place
+
+
+def test_keys_move_what_they_name(kiln: Kiln) -> None:
+    """The rotor turns once, clockwise seen from the end of its keys' axis; the lantern is there, gone, and there."""
+    made = windmill(kiln)
+    for second in range(4):
+        cap, rotor = pose(made, second + 1e-6, "cap", "rotor")
+        turned = np.linalg.inv(cap) @ rotor
+        angle = -np.pi / 2 * second
+        # y of the file is -z here: a turn clockwise about it is one counter-clockwise about z.
+        wanted = [[np.cos(-angle), -np.sin(-angle)], [np.sin(-angle), np.cos(-angle)]]
+        assert np.abs(turned[:2, :2] - wanted).max() < 2e-3, second
+    sizes = [np.linalg.norm(pose(made, time, "lantern-shown")[0][:3, 0]) for time in (0.5, 1.5, 2.5, 3.5)]
+    assert sizes == pytest.approx([1, 0, 0, 1])
+
+
+def test_the_camera_looks_at_its_target_along_its_spline(kiln: Kiln) -> None:
+    """Half way to its second key it is where the spline of Kochanek and Bartels with tension 1/2 has it."""
+    made = windmill(kiln)
+    keys = np.array([[14, -18, 6], [9, -20, 9], [14, -18, 6]], float)
+    middle = 0.5 * 0.5 * (keys[2] - keys[0])  # the slope at the second key
+    first = 0.5 * (1.5 * (keys[1] - keys[0]) - 0.5 * middle)
+    s = 0.5
+    at = keys[0] * (1 + 2 * s) * (1 - s) ** 2 + keys[1] * s * s * (3 - 2 * s)
+    at += first * s * (1 - s) ** 2 - middle * s * s * (1 - s)
+    (camera,) = pose(made, 1.0, "camera01")
+    place = at[[0, 2, 1]] * [1, 1, -1]
+    assert np.abs(camera[:3, 3] - place).max() < 2e-3
+    along = np.array([0, 5, 0]) - place
+    assert np.abs(-camera[:3, 2] - along / np.linalg.norm(along)).max() < 2e-3
+    assert abs(camera[1, 0]) < 2e-3, "level"
+    seen = made.document.json["cameras"][0]["perspective"]
+    assert seen["yfov"] == pytest.approx(2 * np.arctan(18 / 35 * 3 / 4), rel=1e-5)
+    assert (seen["znear"], seen["zfar"]) == pytest.approx((0.5, 200))
+
+
+def test_lights_shine_where_the_file_says(kiln: Kiln) -> None:
+    """A spot and a lamp, by the extension, which is used and not required."""
+    made = windmill(kiln)
+    document = made.document.json
+    assert "KHR_lights_punctual" in document["extensionsUsed"]
+    assert not document.get("extensionsRequired")
+    spot, lamp = document["extensions"]["KHR_lights_punctual"]["lights"]
+    assert (spot["type"], lamp["type"], lamp["range"]) == ("spot", "point", 20)
+    assert np.degrees([spot["spot"]["innerConeAngle"], spot["spot"]["outerConeAngle"]]) == pytest.approx([20, 27.5])
+    (sun,) = pose(made, 0.0, "sun")
+    along = np.array([0, 5, 0]) - sun[:3, 3]
+    assert np.abs(-sun[:3, 2] - along / np.linalg.norm(along)).max() < 1e-5
+
+
+@pytest.mark.parametrize("place", [40, 2000, 4200, 5500])
+def test_scenes_that_are_cut_off_are_refused(kiln: Kiln, place: int) -> None:
+    """Nothing is written."""
+    (kiln.folder / "half.3ds").write_bytes((INPUTS / "windmill.3ds").read_bytes()[:place])
+    kiln.write('[node.mill.import]\nfile = "half.3ds"\n')
+    done = kiln.run("bake", "model.toml", "--out", "out")
+    assert done.returncode == 1
+    assert "error[K0851]" in done.stderr

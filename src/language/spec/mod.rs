@@ -119,7 +119,7 @@ pub use map::{
 pub use material::{Alpha, Color, Filter, Material, Texture, Wrap};
 pub use mesh::Mesh;
 pub use morph::{Morph, MorphName, Morphs, ParameterValue};
-pub use node::Node;
+pub use node::{Node, SceneImport};
 pub use nurbs_surface::{BSplineSurface, NurbsSurface};
 pub use operation::{Chamfer, Fillet, Offset, OffsetCorner, ProfileSet};
 pub use page::reference;

@@ -1,11 +1,13 @@
 //! Nodes: where shapes stand, and what moves with what.
 
 use glam::DVec3;
+use indexmap::IndexMap;
 
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::check::Check;
 use crate::language::spec::construct::table;
+use crate::language::spec::import::{FilePath, Up};
 use crate::language::spec::point::Scale;
 use crate::language::spec::reader::Reader;
 use crate::language::spec::reference::{MaterialName, NodeName, ShapeName};
@@ -28,12 +30,43 @@ table! {
         at: Sp<DVec3> = DVec3::ZERO;
         /// The name of a material, in place of the shape's own.
         material: Option<Sp<MaterialName>>;
+        /// A whole scene from a file, as `[node.NAME.import]`: the node carries it.
+        import: Option<Sp<SceneImport>>;
     }
     checked check
 }
 
+table! {
+    /// A scene from a 3D Studio file (3DS): its objects, cameras and lights are nodes of their names in kebab-case, one below
+    /// the other as in the file, and its motion is a clip. What is hidden for some frames is scaled to nothing there.
+    "scene import" pub SceneImport {
+        /// The file; the path is relative to this document and stays inside the project.
+        file: Sp<FilePath>;
+        /// What one unit of the file is in the document's unit.
+        scale: Sp<f64> = 1.0 => Check::above(0.0);
+        /// Which axis of the file points up: `"z"` when it is not written.
+        up: Option<Sp<Up>>;
+        /// For each material of the file the name of one of this document.
+        materials: IndexMap<String, Sp<MaterialName>> = IndexMap::new();
+        /// Frames that are played in a second.
+        frame_rate: Sp<f64> = 30.0 => Check::within(1.0, 1000.0);
+        /// The name of the clip; that of the node when it is not written.
+        clip: Option<Sp<String>>;
+        /// Whether the clip is played again and again.
+        r#loop: Sp<bool> = false;
+    }
+}
+
 impl Node {
     fn check(&self, _: Span, reader: &mut Reader<'_>) -> bool {
+        if let (Some(shape), Some(import)) = (&self.shape, &self.import) {
+            let message = "a node shows a `shape` or carries what it imports";
+            let report = Diagnostic::error(Code::Conflict, message)
+                .at(shape.span, "cannot stand beside `import`")
+                .also(import.span, "the import");
+            reader.report(report);
+            return false;
+        }
         let (Some(parent), Some(socket)) = (&self.parent, &self.socket) else { return true };
         let report = Diagnostic::error(Code::Conflict, "a node is carried by a `parent` or by a `socket`")
             .at(socket.span, "cannot stand beside `parent`")

@@ -160,7 +160,11 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
         ],
     ),
     ("Materials", "", &["material", "texture"]),
-    ("Nodes", "A document without nodes shows each shape that no other definition uses.", &["node"]),
+    (
+        "Nodes",
+        "A document without nodes shows each shape that no other definition uses.",
+        &["node", "scene import"],
+    ),
     (
         "Motion",
         "A skeleton is written `[skeleton.NAME.joint.JOINT]`, a skin `[skin.NAME]`, a state of a shape `[morph.SHAPE.TARGET]`, a motion `[clip.NAME]` with `[[clip.NAME.track]]`.",
