@@ -3,11 +3,13 @@
 
     scripts/bench.py                  vase, sweep and loft on a fixed grid, the vase within 0.1 mm, peak memory,
                                       evaluation of curves, the teapot, a face at equal deviation, evaluation
-                                      of surfaces, height maps, booleans, weights by heat, every spec of the gallery
+                                      of surfaces, height maps, booleans, weights by heat, growth,
+                                      a thousand documents, every spec of the gallery
     scripts/bench.py --only vase      one part: vase, sweep, loft, tolerance, memory, curves, teapot, face,
-                                      surfaces, heights, booleans, weights or gallery
+                                      surfaces, heights, booleans, weights, growth, farm or gallery
     scripts/bench.py --large          memory up to an output of 1 GB
     scripts/bench.py --json FILE      the figures as JSON too
+    scripts/bench.py --plot FILE      growth as a picture
     scripts/bench.py --readme         also renews the tables between the markers in README.md
 
 Kiln's time runs from its start to .glb and report on disk. Needs scripts/setup --peers and the release build.
@@ -28,7 +30,7 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-from peers import booleans, evaluation, gallery, heights, models, motion, specs, surfaces
+from peers import booleans, evaluation, farm, gallery, growth, heights, models, motion, specs, surfaces
 from peers.process import Runs, together
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -50,6 +52,8 @@ PARTS = (
     "heights",
     "booleans",
     "weights",
+    "growth",
+    "farm",
     "gallery",
 )
 
@@ -81,6 +85,8 @@ def main() -> int:
     print(text)
     if options.json:
         options.json.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
+    if "growth" in parts and options.plot:
+        options.plot.write_text(growth.plot(parts["growth"]), encoding="utf-8")
     if options.readme:
         renew(ROOT / "README.md", text)
     return 1 if any(row.get("failure") for part in parts.values() for row in part["rows"]) else 0
@@ -93,6 +99,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--only", nargs="+", choices=PARTS, default=PARTS, help="the parts to measure")
     parser.add_argument("--large", action="store_true", help="memory up to an output of 1 GB")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures as JSON")
+    parser.add_argument("--plot", type=Path, metavar="FILE", help="draw the growth of time and memory as SVG")
     parser.add_argument("--readme", action="store_true", help="renew the tables in README.md")
     return parser.parse_args()
 
@@ -118,6 +125,10 @@ def measure(part: str, folder: Path, options: argparse.Namespace) -> Part:
     if part == "weights":
         peer = [str(PYTHON), str(ROOT / "tests" / "crosscheck" / "blender_weights.py")]
         return motion.measure(KILN, peer, folder, options.runs, tell)
+    if part == "growth":
+        return growth.measure(KILN, folder, options.runs, tell)
+    if part == "farm":
+        return farm.measure(KILN, CAD_PYTHON.parent / "ninja", folder, options.runs, tell)
     if part == "gallery":
         return gallery.measure(KILN, ROOT / "specs", folder, options.runs, tell)
     return tolerance(folder) if part == "tolerance" else grid(part, folder, options.runs)
@@ -270,6 +281,8 @@ def tables(figures: dict[str, Any]) -> str:
         "heights": heights_table,
         "booleans": booleans_table,
         "weights": weights_table,
+        "growth": growth_table,
+        "farm": farm_table,
         "gallery": gallery_table,
     }
     blocks += [table(figures[part]["rows"]) for part, table in others.items() if part in figures]
@@ -424,6 +437,33 @@ def weights_table(rows: list[dict[str, Any]]) -> str:
         [row["tool"], thousandths(row["seconds"]), thousandths(row["weights"]), ratio(row.get("of-blender"))]
         if row["failure"] is None
         else [row["tool"], "failed", "-", "-"]
+        for row in rows
+    ]
+    return markdown(head, body)
+
+
+def growth_table(rows: list[dict[str, Any]]) -> str:
+    """One face from coarse to fine."""
+    head = ["B-spline face, report included", "triangles", "ms", "us a triangle", "peak MB", "bytes"]
+    body = [
+        [
+            f"within {row['tolerance']:g}", count(row["triangles"]), thousandths(row["seconds"]),
+            ratio(row["seconds"] / row["triangles"] * 1e6), millions(row["peak"]), count(row["bytes"]),
+        ]
+        if row["failure"] is None
+        else [f"within {row['tolerance']:g}", "failed", *["-"] * (len(head) - 2)]
+        for row in rows
+    ]  # fmt: skip
+    return markdown(head, body)
+
+
+def farm_table(rows: list[dict[str, Any]]) -> str:
+    """A thousand documents."""
+    head = [f"{farm.DOCUMENTS} documents", "ms", "cpu ms", "times Ninja"]
+    body = [
+        [row["work"], thousandths(row["seconds"]), thousandths(row["cpu"]), ratio(row["times-ninja"])]
+        if row["failure"] is None
+        else [row["work"], "failed", "-", "-"]
         for row in rows
     ]
     return markdown(head, body)
