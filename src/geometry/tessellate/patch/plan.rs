@@ -45,6 +45,9 @@ pub(super) struct Plan {
     pub(super) steps: Vec<Density>,
     /// Chords that the four rims need as lines of their own, in the order of [`Rim::ALL`].
     pub(super) chords: [Density; 4],
+    /// Whether every other row is shifted by half a step: where the surface bends to one side, triangles that are nearly
+    /// equilateral in the sense of the error leave out less than right ones.
+    pub(super) shifted: bool,
     /// Fewer rows than these would pass the tolerance however many steps they have.
     least: f64,
     /// Triangles, about.
@@ -54,6 +57,9 @@ pub(super) struct Plan {
 /// Normals turn by no more than about this many radians over one step, however coarse the tolerance: a circle
 /// does not become a line.
 const GREATEST_TURN: f64 = 1.4;
+
+/// With fewer rows than these the halves of steps at the ends of shifted rows cost what the shift saves.
+const FEWEST_SHIFTED: f64 = 6.0;
 
 /// Lines that are looked at to see how fine the lattice has to be.
 const PROBES: [f64; 3] = [0.13, 0.5, 0.87];
@@ -81,7 +87,19 @@ impl Plan {
             return rows_along(false);
         }
         let (one, other) = (rows_along(true), rows_along(false));
-        if other.triangles < 0.98 * one.triangles { other } else { one }
+        let mut best = if other.triangles < 0.98 * one.triangles { other } else { one };
+        best.shifted = best.rows.total() >= FEWEST_SHIFTED && samples.bend_to_one_side();
+        best.pair_rows();
+        best
+    }
+
+    /// Makes the rows an even number, so that shifted ones lie between two that are not.
+    fn pair_rows(&mut self) {
+        let total = self.rows.total();
+        let pairs = (total * 0.995 / 2.0).ceil();
+        if self.shifted && total > 0.0 {
+            self.rows = self.rows.scaled(2.0 * pairs / total);
+        }
     }
 
     /// The rows of a fixed grid.
@@ -89,7 +107,8 @@ impl Plan {
         let (u, v) = (Density::even(f64::from(u)), Density::even(f64::from(v)));
         let chords = [u.clone(), v.clone(), u.clone(), v.clone()];
         let triangles = 2.0 * u.total() * v.total();
-        Self { along_u: true, least: v.total(), rows: v, steps: vec![u.clone(), u], chords, triangles }
+        let least = v.total();
+        Self { along_u: true, shifted: false, least, rows: v, steps: vec![u.clone(), u], chords, triangles }
     }
 
     /// What the surface itself needs along a rim.
@@ -109,6 +128,7 @@ impl Plan {
         self.least *= factor;
         if self.rows.total() >= 6.0 || self.least > self.rows.total() {
             self.rows = self.rows.scaled(factor);
+            self.pair_rows();
         }
         for steps in &mut self.steps {
             *steps = steps.scaled(factor);
@@ -136,6 +156,12 @@ impl Samples {
 
     fn row(&self, row: usize) -> &[Sample] {
         &self.places[row * self.across..(row + 1) * self.across]
+    }
+
+    /// Whether it is curved like an egg at most places. Where it is a saddle a shift saves nothing, and costs nothing.
+    fn bend_to_one_side(&self) -> bool {
+        let round = |sample: &&Sample| sample.l * sample.n > sample.m * sample.m;
+        2 * self.places.iter().filter(round).count() >= self.places.len()
     }
 
     fn transposed(&self) -> Self {
@@ -265,7 +291,8 @@ fn cheapest(samples: &Samples, tolerance: f64, beside: [&Density; 2]) -> Plan {
         let triangles = total(&rows, &steps, beside);
         let cost = triangles * (1.0 + SLENDER * slenderness(samples, &rows, &steps));
         let chords = [0; 4].map(|_| Density::even(0.0));
-        (cost, Plan { along_u: true, least: least.total(), rows, steps, chords, triangles })
+        let least = least.total();
+        (cost, Plan { along_u: true, shifted: false, least, rows, steps, chords, triangles })
     };
     let mut best: Option<(f64, Plan)> = None;
     for (cost, plan) in trials.into_iter().map(trial) {

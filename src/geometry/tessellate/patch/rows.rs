@@ -109,6 +109,9 @@ impl Weaver<'_, '_> {
             let level = levels[k];
             let mut places = self.places(level, last.as_ref());
             last = Some(places.clone());
+            if self.plan.shifted && k % 2 == 1 {
+                places = shifted(&places);
+            }
             trim(&mut places, from, to);
             let mut row = Vec::with_capacity(places.len());
             for place in places {
@@ -282,6 +285,13 @@ impl Weaver<'_, '_> {
         let (along, across) = ((b.u - a.u, b.v - a.v), (c.u - b.u, c.v - b.v));
         (bend(along, along) + bend(across, across)) * bend(along, across) >= 0.0
     }
+}
+
+/// The middles between the places of a row, and its ends.
+fn shifted(places: &[f64]) -> Vec<f64> {
+    let (first, last) = (places[0], places[places.len() - 1]);
+    let middles = places.windows(2).map(|pair| f64::midpoint(pair[0], pair[1]));
+    std::iter::once(first).chain(middles).chain(std::iter::once(last)).collect()
 }
 
 /// Leaves of the places of a row those between two, which become its ends.
