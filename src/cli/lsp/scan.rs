@@ -149,12 +149,17 @@ impl Scanner<'_> {
         }
     }
 
-    fn gap(&mut self, at: usize) {
-        let (kind, path) = match self.mode {
+    /// What may stand here, and in which tables.
+    fn here(&self) -> (Kind, Path) {
+        match self.mode {
             Mode::Header => (Kind::Header, Rc::clone(&self.header)),
             Mode::Key => (Kind::Key, self.keyed()),
             Mode::Value | Mode::After => (Kind::Value, self.value()),
-        };
+        }
+    }
+
+    fn gap(&mut self, at: usize) {
+        let (kind, path) = self.here();
         if self.scan.gaps.last().is_none_or(|(_, known, same)| *known != kind || **same != *path) {
             self.scan.gaps.push((at, kind, path));
         }
@@ -222,11 +227,7 @@ impl Scanner<'_> {
         let quoted = matches!(kind, TokenKind::BasicString | TokenKind::LiteralString);
         let written = &self.text[range.clone()];
         let text = if quoted { written.trim_matches(['"', '\'']) } else { written };
-        let (kind, path) = match self.mode {
-            Mode::Header => (Kind::Header, Rc::clone(&self.header)),
-            Mode::Key => (Kind::Key, self.keyed()),
-            Mode::Value | Mode::After => (Kind::Value, self.value()),
-        };
+        let (kind, path) = self.here();
         match self.mode {
             Mode::Header => self.header = joined(&self.header, Step::Key(text.to_owned())),
             Mode::Key => self.key.push(text.to_owned()),
