@@ -38,6 +38,7 @@ def measure(kiln: Path, ninja: Path, folder: Path, runs: int, tell: Callable[[st
     subprocess.run(cached, cwd=folder, check=True)
     plan = [str(kiln), "plan", "farm", "--out", "farm-ninja", "--as", "ninja"]
     text = subprocess.run(plan, cwd=folder, check=True, capture_output=True, text=True).stdout
+    text = text.replace("bake = kiln ", f"bake = {kiln} ")
     (folder / "farm.ninja").write_text(text, encoding="utf-8")
     line = [str(ninja), "-f", "farm.ninja", "--quiet"]
     if ninja.is_file():
