@@ -8,6 +8,7 @@ mod lod;
 mod motion;
 mod notice;
 mod origin;
+mod profile;
 mod solid;
 mod state;
 mod subdivide;
@@ -15,6 +16,8 @@ mod subdivide;
 use file::{file_name, same_file};
 use notice::noticed;
 pub use origin::Origins;
+pub(crate) use profile::profile_of;
+use profile::profiles;
 
 use crate::build::{self, Built};
 use crate::geometry::curve::AnyCurve;
@@ -24,7 +27,7 @@ use crate::gltf::Profile;
 use crate::language::Document;
 use crate::language::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::language::source::{Files, Span};
-use crate::language::spec::{Assertion, OutputProfile, Spec};
+use crate::language::spec::{Assertion, Spec};
 use crate::model::{Model, ShapeHandle};
 use crate::optimize::{Order, Rounding};
 use crate::realize::{self, RealizeError, Realized};
@@ -75,6 +78,19 @@ pub struct Compiled {
     pub deviations: Vec<Option<Vec<[f32; 13]>>>,
     /// What a person should know though nothing is wrong.
     pub warnings: Diagnostics,
+}
+
+impl Compiled {
+    /// The name and the text of its report, where there is one.
+    ///
+    /// # Errors
+    /// None that is known: a report is plain data.
+    pub fn report_file(&self) -> serde_json::Result<Option<(String, Vec<u8>)>> {
+        let Some(report) = &self.report else { return Ok(None) };
+        let mut text = serde_json::to_vec_pretty(report)?;
+        text.push(b'\n');
+        Ok(Some((format!("{}.report.json", self.file.trim_end_matches(".glb")), text)))
+    }
 }
 
 /// Compiles one asset of a document, for the first of its profiles.
@@ -147,38 +163,6 @@ pub fn outputs(
         return Err(document.diagnostics(vec![same]));
     }
     Ok(profiles.into_iter().map(|profile| file_name(options, profile, 0)).collect())
-}
-
-/// For whom an asset is, each once.
-fn profiles(spec: &Spec, options: &Options) -> Vec<Profile> {
-    let mut all = options.profiles.clone();
-    if all.is_empty() {
-        let named = spec.output.profiles.iter().flat_map(|list| &list.value);
-        all = named.map(|profile| profile_of(profile.value)).collect();
-    }
-    let mut seen = Vec::new();
-    all.retain(|profile| {
-        !seen.contains(profile) && {
-            seen.push(*profile);
-            true
-        }
-    });
-    if all.is_empty() { vec![Profile::default()] } else { all }
-}
-
-fn profile_of(name: OutputProfile) -> Profile {
-    match name {
-        OutputProfile::Core => Profile::Core,
-        OutputProfile::Quantized => Profile::Quantized,
-        OutputProfile::Web => Profile::Web,
-        OutputProfile::Bevy => Profile::Bevy,
-        OutputProfile::Godot => Profile::Godot,
-        OutputProfile::Unreal => Profile::Unreal,
-        OutputProfile::Unity => Profile::Unity,
-        OutputProfile::Three => Profile::Three,
-        OutputProfile::Babylon => Profile::Babylon,
-        OutputProfile::Blender => Profile::Blender,
-    }
 }
 
 /// What all files of an asset are made of.

@@ -64,6 +64,60 @@ fn unchanged_files_keep_their_times() {
     assert!(before[2] < after[2], "and so is its box");
 }
 
+const PROJECT: &str =
+    "roots = [\"chess\"]\nprofiles = [\"core\", \"web\"]\n[parameters]\nsize = 3\nother = 1\n";
+
+/// A project file in the root says what the build does not.
+#[test]
+fn a_project_file_in_the_root_is_heard() {
+    let (_folder, assets, out) =
+        project(&[("vase.toml", VASE), ("chess/pawn.toml", PAWN), ("kiln.toml", PROJECT)]);
+    let build = Build::new(&assets).out_dir(&out);
+    let done = build.bake().expect("all is well");
+    assert_eq!(done.files, ["pawn.glb", "pawn.web.glb"].map(|name| out.join(name)));
+    assert!(done.inputs.contains(&assets.join("kiln.toml")));
+    let wide = |out: &Path| fs::read_to_string(out.join("assets.rs")).expect("written").contains("1.5");
+    assert!(wide(&out), "the size of the project");
+    let done = build.clone().set("size", 1).profile(kiln::Profile::Core).bake().expect("all is well");
+    assert_eq!(done.files, [out.join("pawn.glb")]);
+    assert!(!wide(&out), "what the build says wins");
+    fs::write(assets.join("kiln.toml"), PROJECT.replace("roots", "rots")).expect("written");
+    let failure = build.bake().expect_err("a misspelt word");
+    assert!(failure.to_string().contains("did you mean `roots`?"), "{failure}");
+    assert!(failure.inputs.contains(&assets.join("kiln.toml")));
+}
+
+/// What comes from the cache is what a bake gives, warnings too; a folder that cannot be used costs a warning.
+#[test]
+fn a_cache_gives_the_same_assets() {
+    let folded =
+        "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]\nfaces = [[0, 2, 1, 3]]\n";
+    let (folder, assets, out) =
+        project(&[("vase.toml", VASE), ("common/clay.toml", CLAY), ("folded.toml", folded)]);
+    let plain = Build::new(&assets).out_dir(&out).bake().expect("all is well");
+    let cache = folder.path().join("cache");
+    let files = |out: &Path| {
+        let mut all: Vec<_> = fs::read_dir(out).expect("there").flatten().map(|entry| entry.path()).collect();
+        all.sort();
+        all.iter()
+            .map(|path| (path.file_name().map(ToOwned::to_owned), fs::read(path).ok()))
+            .collect::<Vec<_>>()
+    };
+    let right = files(&out);
+    for _ in 0..2 {
+        fs::remove_dir_all(&out).expect("gone");
+        let done = Build::new(&assets).out_dir(&out).cache(&cache, 1 << 30).bake().expect("all is well");
+        assert_eq!(done, plain);
+        assert_eq!(files(&out), right);
+    }
+    let stats = kiln::cache::stats(&cache).expect("a cache");
+    assert_eq!(stats.documents, 2);
+    fs::remove_dir_all(&cache).expect("gone");
+    fs::write(&cache, "no folder").expect("written");
+    let done = Build::new(&assets).out_dir(&out).cache(&cache, 1 << 30).bake().expect("all is well");
+    assert_eq!(done.warnings.len(), plain.warnings.len() + 1);
+}
+
 /// The module compiles, and says what the files say.
 #[test]
 fn the_module_is_rust() {

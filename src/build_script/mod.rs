@@ -4,10 +4,11 @@
 //! ones; diagnostics become Cargo's errors and warnings; a Rust module names every asset, node, mesh, material, clip,
 //! joint, socket and morph target, so that a name that is gone does not compile. Files whose bytes stay the same are not
 //! touched. The module's text depends on the assets and on nothing else, but for the folder of outputs.
-//! No promise: nothing is cached; each run bakes all.
+//! A `kiln.toml` in the root says what is not said here; where a cache is named, what was baked before is taken from it.
 //!
-//! Cost: that of the documents, in parallel.
+//! Cost: that of the documents, in parallel; with a cache, of those that changed.
 
+mod baker;
 mod module;
 mod names;
 
@@ -17,10 +18,12 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
-use crate::compile::{Compiled, Options, compile_profiles};
+use crate::cache::Cache;
+use crate::compile::profile_of;
 use crate::gltf::Profile;
-use crate::language::source::{FileRecord, Files as _};
-use crate::project::{Task, Told, collect, reason, save};
+use crate::language::PROJECT_FILE;
+use crate::project::{Project, ProjectFault, Task, collect, reason, save};
+use baker::{Baker, Document, Output};
 use module::Asset;
 
 /// The bake of a folder, from a build script.
@@ -46,6 +49,7 @@ pub struct Build {
     parameters: Vec<(String, String)>,
     profiles: Vec<Profile>,
     report: bool,
+    cache: Option<(PathBuf, u64)>,
 }
 
 /// What was baked.
@@ -84,6 +88,7 @@ impl Build {
             parameters: Vec::new(),
             profiles: Vec::new(),
             report: true,
+            cache: None,
         }
     }
 
@@ -113,6 +118,14 @@ impl Build {
     #[must_use]
     pub fn profile(mut self, profile: Profile) -> Self {
         self.profiles.push(profile);
+        self
+    }
+
+    /// Takes what was baked before from a folder, and keeps there what is baked now, up to a number of bytes. A folder
+    /// that cannot be used costs a warning. Without it nothing is kept, whatever `kiln.toml` says.
+    #[must_use]
+    pub fn cache(mut self, folder: impl Into<PathBuf>, limit: u64) -> Self {
+        self.cache = Some((folder.into(), limit));
         self
     }
 
@@ -150,29 +163,38 @@ impl Build {
                     .to_owned(),
             )
         })?;
-        let root = self.root.clone().unwrap_or_else(|| self.folder.clone());
-        let tasks = collect(&self.folder, root.is_dir().then_some(root.as_path())).map_err(fail)?;
+        let (project, tasks) = self.tasks().map_err(|error| BuildFailure {
+            errors: vec![error],
+            inputs: vec![self.folder.clone(), self.root_folder().join(PROJECT_FILE)],
+        })?;
         if tasks.is_empty() {
             return Err(fail(format!("no document (.toml) in {}", self.folder.display())));
         }
-        let baked: Vec<Document> = tasks.par_iter().map(|task| self.document(task)).collect();
-        let mut inputs = BTreeSet::from([self.folder.clone()]);
-        let mut errors = Vec::new();
         let mut done = BuiltAssets { module: out.join(self.module_name()), ..BuiltAssets::default() };
+        let cache = self.opened(&mut done.warnings);
+        let baker = self.baker(project.as_ref(), cache.as_ref());
+        let baked: Vec<Document> = tasks.par_iter().map(|task| baker.document(task)).collect();
+        done.warnings.extend(cache.and_then(|cache| cache.finish()).map(|trouble| unusable(&trouble)));
+        let mut inputs = BTreeSet::from([self.folder.clone()]);
+        inputs.extend(project.map(|_| self.root_folder().join(PROJECT_FILE)));
+        let mut errors = Vec::new();
         let mut assets = Vec::new();
         let mut triangles = 0;
         for document in baked {
             inputs.extend(document.inputs);
             errors.extend(document.errors);
             done.warnings.extend(document.warnings);
-            for (folder, compiled) in document.assets {
+            for Output { folder, file, files, facts } in document.outputs {
                 let place = if folder.is_empty() { out.clone() } else { out.join(&folder) };
-                triangles += compiled.report.as_ref().map_or(0, |report| report.totals.triangles);
-                match written(&place, &compiled) {
-                    Ok(()) => done.files.push(place.join(&compiled.file)),
+                triangles += facts.triangles;
+                let written =
+                    files.iter().try_for_each(|(name, bytes)| unless_same(&place.join(name), bytes));
+                match written {
+                    Ok(()) => done.files.push(place.join(&file)),
                     Err(error) => errors.push(error),
                 }
-                assets.push(Asset::new(&folder, &compiled));
+                let bytes = files.first().map(|(_, bytes)| bytes.as_slice()).unwrap_or_default();
+                assets.push(Asset::new(&folder, &file, bytes, facts.bounds));
             }
         }
         done.inputs = inputs.into_iter().collect();
@@ -202,52 +224,48 @@ impl Build {
         format!("{}.rs", names::module(&stem))
     }
 
-    fn document(&self, task: &Task) -> Document {
-        let mut done = Document::default();
-        let (files, document) = match task.load() {
-            Ok(loaded) => loaded,
-            Err(error) => {
-                done.errors.push(format!("{}: {}", task.path, reason(&error)));
-                return done;
+    /// The folder that no document may read outside of.
+    fn root_folder(&self) -> &Path {
+        self.root.as_deref().unwrap_or(&self.folder)
+    }
+
+    /// The documents, and the project whose file lies in the root; all of the project's where the folder is its own.
+    fn tasks(&self) -> Result<(Option<Project>, Vec<Task>), String> {
+        let root = self.root_folder();
+        let file = root.join(PROJECT_FILE);
+        let project =
+            file.is_file().then(|| Project::load(&file)).transpose().map_err(|fault| match fault {
+                ProjectFault::Wrong(list) => list.render(false),
+                ProjectFault::Unreachable(message) => message,
+            })?;
+        let tasks = match &project {
+            Some(project) if self.folder.canonicalize().is_ok_and(|folder| folder == project.root) => {
+                project.tasks().map_err(|list| list.render(false))?
             }
+            _ => collect(&self.folder, root.is_dir().then_some(root))?,
         };
-        match document {
-            Ok(document) if task.found && document.is_library() => {}
-            Ok(document) => {
-                let mut told = Told::default();
-                let variants = std::iter::once(None).chain(document.variants().into_iter().map(Some));
-                for variant in variants {
-                    let options = Options {
-                        variant,
-                        overrides: self.parameters.clone(),
-                        name: task.name().to_owned(),
-                        path: task.path.clone(),
-                        no_report: !self.report,
-                        measure: false,
-                        origins: false,
-                        deviations: false,
-                        profiles: self.profiles.clone(),
-                    };
-                    let folder = task.output.rsplit_once('/').map_or("", |(folder, _)| folder);
-                    let variant = options.variant.as_deref();
-                    match compile_profiles(&document, &files, &options) {
-                        Ok(all) => {
-                            for mut compiled in all {
-                                let none = document.diagnostics(Vec::new());
-                                let warnings = std::mem::replace(&mut compiled.warnings, none);
-                                done.warn(&told.only_new(&document, warnings, variant));
-                                done.assets.push((folder.to_owned(), compiled));
-                            }
-                        }
-                        Err(list) => done.fail(&told.only_new(&document, list, variant)),
-                    }
-                }
+        Ok((project, tasks))
+    }
+
+    fn opened(&self, warnings: &mut Vec<String>) -> Option<Cache> {
+        let (folder, limit) = self.cache.as_ref()?;
+        Cache::open(folder, *limit)
+            .map_err(|error| warnings.push(format!("no cache in {}: {}", folder.display(), reason(&error))))
+            .ok()
+    }
+
+    fn baker<'a>(&'a self, project: Option<&Project>, cache: Option<&'a Cache>) -> Baker<'a> {
+        let file = project.map(|project| &project.file.project);
+        let of_project = file.and_then(|file| file.profiles.as_ref());
+        let profiles = match of_project {
+            Some(list) if self.profiles.is_empty() => {
+                list.value.iter().map(|name| profile_of(name.value)).collect()
             }
-            Err(list) => done.fail(&list),
-        }
-        let path = |record: FileRecord| record.found.then(|| self.shown(task, &record.path));
-        done.inputs = files.record().into_iter().filter_map(path).collect();
-        done
+            _ => self.profiles.clone(),
+        };
+        let given = file.into_iter().flat_map(|file| &file.parameters);
+        let given = given.map(|(name, text)| (name.clone(), text.value.0.clone())).collect();
+        Baker { build: self, profiles, given, cache }
     }
 
     /// The path of an input as the build script would write it: below the folder where that is the root.
@@ -264,40 +282,8 @@ impl Build {
 const SLOW: &str = "this bake would be five to seven times faster with optimized build scripts; write in Cargo.toml:\n\
                     [profile.dev.build-override]\nopt-level = 3";
 
-/// What came of one document.
-#[derive(Default)]
-struct Document {
-    /// Folders below the output folder, and what goes there.
-    assets: Vec<(String, Compiled)>,
-    errors: Vec<String>,
-    warnings: Vec<String>,
-    inputs: Vec<PathBuf>,
-}
-
-impl Document {
-    fn warn(&mut self, list: &crate::language::diagnostic::Diagnostics) {
-        if !list.is_empty() {
-            self.warnings.push(list.render(false));
-        }
-    }
-
-    fn fail(&mut self, list: &crate::language::diagnostic::Diagnostics) {
-        if !list.is_empty() {
-            self.errors.push(list.render(false));
-        }
-    }
-}
-
-/// Writes an asset and its report.
-fn written(folder: &Path, compiled: &Compiled) -> Result<(), String> {
-    unless_same(&folder.join(&compiled.file), &compiled.bytes)?;
-    if let Some(report) = &compiled.report {
-        let name = format!("{}.report.json", compiled.file.trim_end_matches(".glb"));
-        let mut text = serde_json::to_vec_pretty(report).map_err(|error| error.to_string())?;
-        text.push(b'\n');
-        unless_same(&folder.join(name), &text)?;
-    }
-    Ok(())
+fn unusable(trouble: &str) -> String {
+    format!("the cache cannot be written: {trouble}")
 }
 
 /// Writes a file whose bytes are others than these; Cargo goes by the time of a file.

@@ -7,7 +7,6 @@ use std::path::Path;
 use gltf::json::Root;
 
 use super::names;
-use crate::compile::Compiled;
 use crate::geometry::number::single;
 use crate::gltf::ReadLevels;
 
@@ -26,18 +25,16 @@ pub(super) struct Asset {
 }
 
 impl Asset {
-    pub(super) fn new(folder: &str, compiled: &Compiled) -> Self {
-        let bounds =
-            compiled.report.as_ref().map(|report| [report.totals.bounds.min, report.totals.bounds.max]);
+    pub(super) fn new(folder: &str, file: &str, bytes: &[u8], bounds: Option<[[f64; 3]; 2]>) -> Self {
         // What was written is read; it cannot be broken.
-        let plain = crate::packing::unpacked(&compiled.bytes).unwrap_or_default();
+        let plain = crate::packing::unpacked(bytes).unwrap_or_default();
         let (root, levels) =
             crate::gltf::read(&plain).map(|read| (read.root, read.levels)).unwrap_or_default();
         let name = |mesh: &usize| root.meshes[*mesh].name.clone().unwrap_or_default();
         let named =
             |one: &ReadLevels| one.meshes.iter().map(name).zip(one.coverage.iter().copied()).collect();
         let levels = levels.iter().map(named).collect();
-        Self { folder: folder.to_owned(), file: compiled.file.clone(), bounds, lists: lists(&root), levels }
+        Self { folder: folder.to_owned(), file: file.to_owned(), bounds, lists: lists(&root), levels }
     }
 
     /// Names of the modules around it, and its own.

@@ -10,6 +10,8 @@ use crate::language::diagnostic::Diagnostic;
 pub struct Record {
     /// One for each variant and profile.
     pub assets: Vec<Baked>,
+    /// The names of its parameters, those of its variants too.
+    pub parameters: Vec<String>,
 }
 
 /// An asset that was baked.

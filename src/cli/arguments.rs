@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::gltf::Profile;
+use crate::language::Document;
 use crate::language::spec::parse_bytes;
 use crate::preview::View;
 use crate::preview::heat::Heat;
@@ -105,13 +106,16 @@ pub(crate) enum Command {
 /// Documents and what they are given.
 #[derive(Debug, Args)]
 pub(crate) struct Documents {
-    /// Documents, or folders of them
-    #[arg(required = true, value_name = "PATH")]
+    /// Documents, folders of them, or a project file [default: all of the project, by the kiln.toml here or above]
+    #[arg(value_name = "PATH")]
     pub(crate) paths: Vec<PathBuf>,
     /// Set a parameter for all documents
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<(String, String)>,
-    /// The folder that no document may read outside of [default: the working directory]
+    /// Parameters that the project gives to those documents that have them.
+    #[arg(skip)]
+    pub(crate) given: Vec<(String, String)>,
+    /// The folder that no document may read outside of [default: that of the project file, or the working directory]
     #[arg(long, value_name = "DIR")]
     pub(crate) root: Option<PathBuf>,
     /// How many documents are worked on at once [default: one for each core]
@@ -120,6 +124,15 @@ pub(crate) struct Documents {
     /// Work on one of N equal parts of the documents, from 1, so that N machines share them
     #[arg(long, value_name = "I/N", value_parser = shard)]
     pub(crate) shard: Option<Shard>,
+}
+
+impl Documents {
+    /// The parameters of a document: those of the project that it has, then those of the command line, which win.
+    pub(crate) fn overrides(&self, document: &Document) -> Vec<(String, String)> {
+        let known = if self.given.is_empty() { Vec::new() } else { document.parameters() };
+        let given = self.given.iter().filter(|(name, _)| known.contains(name));
+        given.chain(&self.set).cloned().collect()
+    }
 }
 
 /// One of several equal parts.
@@ -145,9 +158,9 @@ pub(crate) struct RecordOptions {
 pub(crate) struct Bake {
     #[command(flatten)]
     pub(crate) documents: Documents,
-    /// Where outputs go; documents found in folders keep their place below it
-    #[arg(short, long, value_name = "DIR", default_value = "out")]
-    pub(crate) out: PathBuf,
+    /// Where outputs go; documents found in folders keep their place below it [default: what the project says, else out]
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
     /// Measure the distance from the true surface by dense sampling too
     #[arg(long, conflicts_with = "no_report")]
     pub(crate) measure: bool,
@@ -173,9 +186,9 @@ pub(crate) struct Bake {
 pub(crate) struct Plan {
     #[command(flatten)]
     pub(crate) documents: Documents,
-    /// Where outputs would go
-    #[arg(short, long, value_name = "DIR", default_value = "out")]
-    pub(crate) out: PathBuf,
+    /// Where outputs would go [default: what the project says, else out]
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
     /// What the plan is written as
     #[arg(long = "as", value_enum, default_value_t = PlanFormat::Json)]
     pub(crate) form: PlanFormat,
@@ -207,16 +220,16 @@ pub(crate) struct CacheOptions {
     /// Use no cache, whatever `KILN_CACHE` says
     #[arg(long)]
     pub(crate) no_cache: bool,
-    /// How much the folder may take; what was not used for the longest time goes first
-    #[arg(long, value_name = "SIZE", default_value = "1 GB", value_parser = bytes)]
-    pub(crate) cache_limit: u64,
+    /// How much the folder may take; what was not used for the longest time goes first [default: 1 GB]
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    pub(crate) cache_limit: Option<u64>,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct CacheCommand {
     #[command(subcommand)]
     pub(crate) action: CacheAction,
-    /// The folder [default: what `KILN_CACHE` names]
+    /// The folder [default: what `KILN_CACHE` names, else that of the project]
     #[arg(long, global = true, value_name = "DIR")]
     pub(crate) cache: Option<PathBuf>,
 }

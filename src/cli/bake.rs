@@ -1,8 +1,9 @@
 //! `kiln bake`: documents into files.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use serde_json::json;
 
@@ -12,39 +13,54 @@ use super::baked::baked;
 use super::cache;
 use super::dependencies::Dependencies;
 use super::output::Printer;
-use super::project::{Work, each, loaded, tasks};
+use super::project::{Work, each, from_here, loaded, named, out, profiles};
 use super::records::write;
 use super::turns::Message;
 use crate::cache::{Baked, Cache, Hit, Key, Record};
 use crate::compile::{Options, compile_profiles};
-use crate::language::Document;
+use crate::language::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::language::source::Files as _;
-use crate::project::{Task, Told, reason, save};
+use crate::language::spec::{backtick, closest};
+use crate::language::{Document, PROJECT_FILE};
+use crate::project::{Project, Task, Told, reason, save};
 
 /// Bakes all documents; one that fails does not stop the others.
-pub(crate) fn run(bake: &Bake, printer: &Printer) -> Outcome {
-    let Some(tasks) = tasks(&bake.documents, printer) else { return Outcome::Files };
+pub(crate) fn run(bake: &mut Bake, printer: &Printer) -> Outcome {
+    let (project, tasks) = match named(&mut bake.documents, bake.out.as_ref(), printer) {
+        Ok(named) => named,
+        Err(outcome) => return outcome,
+    };
+    let project = project.as_ref();
+    bake.profile = profiles(&bake.profile, project);
+    let out = out(bake.out.as_ref(), project);
     if let Some(message) = same_name(&tasks) {
         printer.failure(&message, Some("bake them in separate runs with different --out folders"));
         return Outcome::Usage;
     }
     if bake.check {
         // Nothing is written, the folder neither.
-    } else if let Err(error) = std::fs::create_dir_all(&bake.out) {
-        let message = format!("cannot make the output folder {}: {}", bake.out.display(), reason(&error));
+    } else if let Err(error) = std::fs::create_dir_all(&out) {
+        let message = format!("cannot make the output folder {}: {}", out.display(), reason(&error));
         printer.failure(&message, None);
         return Outcome::Files;
     }
     let worker = Worker {
         bake,
+        project,
+        out,
+        names: tasks.iter().map(|task| task.output.to_lowercase()).collect(),
         printer,
         dependencies: Dependencies::default(),
-        cache: cache::opened(&bake.cache, printer),
+        cache: cache::opened(&bake.cache, project, printer),
         hits: AtomicUsize::new(0),
+        parameters: Mutex::default(),
     };
     let work = Work { documents: &bake.documents, records: &bake.records, printer };
     let outcome = each(&work, &tasks, &|turn, task, messages| worker.document((turn, task), messages));
     worker.end_cache(tasks.len());
+    if outcome == Outcome::Good && bake.documents.paths.is_empty() && bake.documents.shard.is_none() {
+        worker.tell_unused();
+    }
     let written = bake.depfile.as_ref().map(|file| write(file, &worker.dependencies.text(), printer));
     outcome.max(written.unwrap_or(Outcome::Good))
 }
@@ -66,11 +82,18 @@ fn same_name(tasks: &[Task]) -> Option<String> {
 
 struct Worker<'a> {
     bake: &'a Bake,
+    project: Option<&'a Project>,
+    /// Where outputs go.
+    out: PathBuf,
+    /// The names of the outputs of all documents, in lower case.
+    names: BTreeSet<String>,
     printer: &'a Printer,
     dependencies: Dependencies,
     cache: Option<Cache>,
     /// Documents that were found in the cache.
     hits: AtomicUsize,
+    /// The names of the parameters of all documents.
+    parameters: Mutex<BTreeSet<String>>,
 }
 
 impl Worker<'_> {
@@ -96,11 +119,13 @@ impl Worker<'_> {
         let mut outcome = Outcome::Good;
         let mut told = Told::default();
         let mut made = Made::default();
+        made.record.parameters = document.parameters();
+        self.note_parameters(&made.record);
         let variants = std::iter::once(None).chain(document.variants().into_iter().map(Some));
         for variant in variants {
             let options = Options {
                 variant,
-                overrides: self.bake.documents.set.clone(),
+                overrides: self.bake.documents.overrides(&document),
                 name: task.name().to_owned(),
                 path: task.path.clone(),
                 no_report: self.bake.no_report,
@@ -115,6 +140,11 @@ impl Worker<'_> {
                         compiled.warnings =
                             told.only_new(&document, compiled.warnings, options.variant.as_deref());
                         let target = self.target(task, &compiled.file);
+                        if let Some(message) = self.taken(task, &compiled.file) {
+                            messages.push(message);
+                            outcome = outcome.max(Outcome::Errors);
+                            continue;
+                        }
                         let asset = baked(&task.path, compiled).map_err(|error| {
                             Message::Failure(format!("cannot write {}: {}", target.display(), reason(&error)))
                         });
@@ -135,6 +165,7 @@ impl Worker<'_> {
                 }
                 Err(list) => {
                     let list = told.only_new(&document, list, options.variant.as_deref());
+                    let list = self.with_project(&document, list);
                     messages.push(Message::Diagnostics(list));
                     outcome = outcome.max(Outcome::Errors);
                 }
@@ -153,11 +184,14 @@ impl Worker<'_> {
     }
 
     /// Everything but files that outputs depend on.
-    fn key(&self, cache: &Cache, task: &Task) -> Key {
+    fn key<'a>(&'a self, cache: &Cache, task: &'a Task) -> Key {
         let bake = self.bake;
         let flags = [bake.no_report, bake.measure].map(|flag| if flag { "yes" } else { "no" });
         let profiles = bake.profile.iter().map(|profile| profile.name());
-        let sets = bake.documents.set.iter().flat_map(|(name, value)| [name.as_str(), value.as_str()]);
+        let texts = |list: &'a [(String, String)]| {
+            list.iter().flat_map(|(name, value)| [name.as_str(), value.as_str()])
+        };
+        let sets = texts(&bake.documents.given).chain(["--"]).chain(texts(&bake.documents.set));
         cache.key(
             [task.path.as_str(), task.name()]
                 .into_iter()
@@ -176,6 +210,10 @@ impl Worker<'_> {
         messages: &mut Vec<Message>,
     ) -> Option<Outcome> {
         let Hit { record, inputs } = cache.find(key, &task.root)?;
+        if record.assets.iter().any(|asset| self.taken(task, &asset.file).is_some()) {
+            return None;
+        }
+        self.note_parameters(&record);
         let mut missing = Vec::new();
         for asset in &record.assets {
             let folder = self.folder(task);
@@ -214,10 +252,66 @@ impl Worker<'_> {
         Some(outcome)
     }
 
+    /// What is said of a file that another document is written to: `a.tall.toml` becomes what a variant `tall` of `a.toml` does.
+    fn taken(&self, task: &Task, file: &str) -> Option<Message> {
+        let folder = task.output.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
+        let stem = format!("{folder}{}", file.trim_end_matches(".glb")).to_lowercase();
+        // A longer name than its own: `a` may be written to `a.tall.glb`, unless that is `a.tall`'s.
+        let own = task.output.len();
+        let mut ends = stem.match_indices('.').map(|(at, _)| at).chain([stem.len()]).filter(|end| *end > own);
+        let other = ends.find_map(|end| self.names.get(&stem[..end]))?;
+        let target = self.target(task, file);
+        Some(Message::Failure(format!(
+            "{} would be written to {}, which belongs to {other}.toml: rename the document, the variant or that document",
+            task.path,
+            target.display()
+        )))
+    }
+
+    fn note_parameters(&self, record: &Record) {
+        if !self.bake.documents.given.is_empty() {
+            let mut all = self.parameters.lock().unwrap_or_else(PoisonError::into_inner);
+            all.extend(record.parameters.iter().cloned());
+        }
+    }
+
+    /// Errors on parameters with the place in the project file that sets them.
+    fn with_project(&self, document: &Document, list: Diagnostics) -> Diagnostics {
+        let Some(file) = self.project.map(|project| &project.file) else { return list };
+        let set = |one: &Diagnostic| {
+            let texts = || one.notes.iter().chain([&one.message]);
+            let named = |name: &&String| texts().any(|text| text.contains(&format!("--set {name}=")));
+            let name =
+                (one.code == Code::BadOverride).then(|| file.project.parameters.keys().find(named))??;
+            Some(format!("{PROJECT_FILE}:{} sets `{name}`", file.line(file.project.parameters[name].span)))
+        };
+        let noted = list.into_vec().into_iter().map(|one| match set(&one) {
+            Some(note) => one.note(note),
+            None => one,
+        });
+        document.diagnostics(noted.collect())
+    }
+
+    /// Tells parameters of the project that no document has.
+    fn tell_unused(&self) {
+        let Some(file) = self.project.map(|project| &project.file) else { return };
+        let known = self.parameters.lock().unwrap_or_else(PoisonError::into_inner);
+        let unused = file.project.parameters.iter().filter(|(name, _)| !known.contains(*name));
+        let list = unused.map(|(name, value)| {
+            let message = format!("no document has the parameter {}", backtick(name));
+            let report = Diagnostic::warning(Code::ProjectParameter, message).at(value.span, "sets nothing");
+            match closest(name, known.iter().map(String::as_str)) {
+                Some(near) => report.help(format!("did you mean `{near}`?")),
+                None => report,
+            }
+        });
+        self.printer.diagnostics(&file.diagnostics(list.collect()));
+    }
+
     fn folder(&self, task: &Task) -> PathBuf {
         match task.output.rsplit_once('/') {
-            Some((folder, _)) => self.bake.out.join(folder),
-            None => self.bake.out.clone(),
+            Some((folder, _)) => self.out.join(folder),
+            None => self.out.clone(),
         }
     }
 
@@ -272,7 +366,9 @@ impl Worker<'_> {
     ) {
         let files = record.assets.iter().flat_map(|asset| &asset.files);
         let outputs = files.map(|file| self.target(task, &file.name).display().to_string()).collect();
-        self.dependencies.add(index, outputs, inputs.map(|path| shown(task, path)).collect());
+        let project = self.project.map(|project| from_here(project.place()).display().to_string());
+        let inputs = inputs.map(|path| shown(task, path)).chain(project).collect();
+        self.dependencies.add(index, outputs, inputs);
     }
 
     /// Tells what was baked, where that went well.

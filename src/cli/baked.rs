@@ -9,7 +9,7 @@ use crate::report::{DeviationFacts, Kind, Report, ShapeFacts};
 /// An asset with the bytes of its files. Its line is what follows its path.
 pub(crate) fn baked(spec: &str, compiled: Compiled) -> std::io::Result<(Baked, Vec<Vec<u8>>)> {
     let line = line(&compiled);
-    let (names, report_text): (Vec<String>, Option<Vec<u8>>) = match report_of(&compiled)? {
+    let (names, report_text): (Vec<String>, Option<Vec<u8>>) = match compiled.report_file()? {
         Some((name, text)) => (vec![compiled.file.clone(), name], Some(text)),
         None => (vec![compiled.file.clone()], None),
     };
@@ -26,14 +26,6 @@ pub(crate) fn baked(spec: &str, compiled: Compiled) -> std::io::Result<(Baked, V
     let all: Vec<Vec<u8>> = std::iter::once(bytes).chain(report_text).collect();
     let files = names.iter().zip(&all).map(|(name, bytes)| OutputFile::of(name, bytes)).collect();
     Ok((Baked { file, line, facts, files, warnings: warnings.into_vec() }, all))
-}
-
-/// The name and the text of an asset's report.
-pub(super) fn report_of(compiled: &Compiled) -> std::io::Result<Option<(String, Vec<u8>)>> {
-    let Some(report) = &compiled.report else { return Ok(None) };
-    let mut text = serde_json::to_vec_pretty(report)?;
-    text.push(b'\n');
-    Ok(Some((format!("{}.report.json", compiled.file.trim_end_matches(".glb")), text)))
 }
 
 /// The greatest deviation of all shapes, coarser levels of detail left out.

@@ -8,22 +8,33 @@ use super::Outcome;
 use super::arguments::{CacheAction, CacheCommand, CacheOptions};
 use super::baked::size;
 use super::output::Printer;
+use super::project::{from_here, loaded_project, project_here};
 use crate::cache::{Cache, Stats, clear, stats, verify};
-use crate::project::reason;
+use crate::project::{Project, reason};
 
-/// The folder that an argument or the environment names.
-fn folder(written: Option<&PathBuf>) -> Option<PathBuf> {
+/// The most that a cache's folder takes where nothing is said.
+const LIMIT: u64 = 1_000_000_000;
+
+/// The folder that an argument or the environment names, else the project.
+fn folder(written: Option<&PathBuf>, project: Option<&Project>) -> Option<PathBuf> {
     let named = || std::env::var_os("KILN_CACHE").filter(|value| !value.is_empty()).map(PathBuf::from);
-    written.cloned().or_else(named)
+    let of_project = || {
+        let project = project?;
+        let folder = project.file.project.cache.as_ref()?.value.folder.as_ref()?;
+        Some(from_here(project.path(&folder.value)))
+    };
+    written.cloned().or_else(named).or_else(of_project)
 }
 
 /// The cache that a command uses, if any. One that cannot be used costs a warning and nothing else.
-pub(crate) fn opened(options: &CacheOptions, printer: &Printer) -> Option<Cache> {
+pub(crate) fn opened(options: &CacheOptions, project: Option<&Project>, printer: &Printer) -> Option<Cache> {
     if options.no_cache {
         return None;
     }
-    let folder = folder(options.cache.as_ref())?;
-    match Cache::open(&folder, options.cache_limit) {
+    let folder = folder(options.cache.as_ref(), project)?;
+    let of_project = project.and_then(|project| project.file.project.cache.as_ref()?.value.limit);
+    let limit = options.cache_limit.or(of_project.map(|limit| limit.value.0)).unwrap_or(LIMIT);
+    match Cache::open(&folder, limit) {
         Ok(cache) => Some(cache),
         Err(error) => {
             printer.warning(&format!("no cache in {}: {}", folder.display(), reason(&error)));
@@ -34,8 +45,13 @@ pub(crate) fn opened(options: &CacheOptions, printer: &Printer) -> Option<Cache>
 
 /// Looks after a cache.
 pub(crate) fn run(command: &CacheCommand, printer: &Printer) -> Outcome {
-    let Some(folder) = folder(command.cache.as_ref()) else {
-        printer.failure("no cache is named", Some("write `--cache DIR`, or set KILN_CACHE"));
+    let project = match project_here().map(|file| loaded_project(&file, printer)).transpose() {
+        Ok(project) => project,
+        Err(outcome) => return outcome,
+    };
+    let Some(folder) = folder(command.cache.as_ref(), project.as_ref()) else {
+        let help = "write `--cache DIR`, set KILN_CACHE, or give the project a `[cache]` with a `folder`";
+        printer.failure("no cache is named", Some(help));
         return Outcome::Usage;
     };
     let done = match command.action {

@@ -5,19 +5,24 @@ use serde_json::json;
 use super::Outcome;
 use super::arguments::Check;
 use super::output::Printer;
-use super::project::{Work, each, loaded, tasks};
+use super::project::{Work, each, loaded, named, profiles};
 use super::turns::Message;
 use crate::compile::{Options, compile};
+use crate::gltf::Profile;
 use crate::project::{Task, Told};
 
 /// Checks all documents, to the end of the pipeline: what passes here can be baked.
-pub(crate) fn run(check: &Check, printer: &Printer) -> Outcome {
-    let Some(tasks) = tasks(&check.documents, printer) else { return Outcome::Files };
+pub(crate) fn run(check: &mut Check, printer: &Printer) -> Outcome {
+    let (project, tasks) = match named(&mut check.documents, None, printer) {
+        Ok(named) => named,
+        Err(outcome) => return outcome,
+    };
+    let profiles = profiles(&[], project.as_ref());
     let work = Work { documents: &check.documents, records: &check.records, printer };
-    each(&work, &tasks, &|_, task, messages| document(check, task, messages))
+    each(&work, &tasks, &|_, task, messages| document((check, &profiles), task, messages))
 }
 
-fn document(check: &Check, task: &Task, messages: &mut Vec<Message>) -> Outcome {
+fn document((check, profiles): (&Check, &[Profile]), task: &Task, messages: &mut Vec<Message>) -> Outcome {
     let (files, document) = match loaded(task, messages) {
         Ok(loaded) => loaded,
         Err(outcome) => return outcome,
@@ -30,9 +35,10 @@ fn document(check: &Check, task: &Task, messages: &mut Vec<Message>) -> Outcome 
     for variant in std::iter::once(None).chain(document.variants().into_iter().map(Some)) {
         let options = Options {
             variant,
-            overrides: check.documents.set.clone(),
+            overrides: check.documents.overrides(&document),
             name: task.name().to_owned(),
             path: task.path.clone(),
+            profiles: profiles.to_vec(),
             ..Options::default()
         };
         let list = match compile(&document, &files, &options) {

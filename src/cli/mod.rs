@@ -73,10 +73,10 @@ pub fn run() -> ExitCode {
     };
     let printer = output::Printer::new(&arguments.common);
     let outcome = match arguments.command {
-        Command::Bake(bake) => bake::run(&bake, &printer),
-        Command::Check(check) => check::run(&check, &printer),
+        Command::Bake(mut bake) => bake::run(&mut bake, &printer),
+        Command::Check(mut check) => check::run(&mut check, &printer),
         Command::Fmt(fmt) => format::run(&fmt, &printer),
-        Command::Plan(plan) => plan::run(&plan, &printer),
+        Command::Plan(mut plan) => plan::run(&mut plan, &printer),
         Command::Render(render) => render::run(&render, &printer),
         Command::Watch(watch) => watch::run(&watch, &printer),
         Command::Sample(sample) => sample::run(&sample, &printer),
@@ -85,7 +85,7 @@ pub fn run() -> ExitCode {
         Command::Explain(explain) => describe::explain(&explain, &printer),
         Command::New(new) => starter::run(&new, &printer),
         Command::Diff(diff) => diff::run(&diff, &printer),
-        Command::Gallery(gallery) => gallery::run(&gallery, &printer),
+        Command::Gallery(mut gallery) => gallery::run(&mut gallery, &printer),
         Command::Lsp => lsp::run(&printer),
         Command::Inspect(inspect) => inspect::run(&inspect, &printer),
         Command::Cache(command) => cache::run(&command, &printer),

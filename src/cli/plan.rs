@@ -15,7 +15,7 @@ use super::arguments::{Plan, PlanFormat, RecordOptions};
 use super::bake::shown;
 use super::dependencies::escaped;
 use super::output::Printer;
-use super::project::{Work, each, loaded, tasks};
+use super::project::{Work, each, from_here, loaded, named, out, profiles};
 use super::turns::Message;
 use crate::compile::{Options, outputs};
 use crate::language::source::Files as _;
@@ -31,11 +31,21 @@ struct Step {
 }
 
 /// Prints the plan; nothing where a document is wrong.
-pub(crate) fn run(plan: &Plan, printer: &Printer) -> Outcome {
-    let Some(tasks) = tasks(&plan.documents, printer) else { return Outcome::Files };
+pub(crate) fn run(plan: &mut Plan, printer: &Printer) -> Outcome {
+    let (project, tasks) = match named(&mut plan.documents, plan.out.as_ref(), printer) {
+        Ok(named) => named,
+        Err(outcome) => return outcome,
+    };
+    plan.profile = profiles(&plan.profile, project.as_ref());
+    let folder = out(plan.out.as_ref(), project.as_ref());
+    let planned = Planned {
+        plan,
+        out: &folder,
+        project: project.map(|project| from_here(project.place()).display().to_string()),
+    };
     let steps = Mutex::new(Vec::new());
     let work = Work { documents: &plan.documents, records: &RecordOptions::default(), printer };
-    let outcome = each(&work, &tasks, &|turn, task, messages| match step(plan, (turn, task), messages) {
+    let outcome = each(&work, &tasks, &|turn, task, messages| match planned.step((turn, task), messages) {
         Ok(step) => {
             steps.lock().unwrap_or_else(PoisonError::into_inner).extend(step);
             Outcome::Good
@@ -55,53 +65,66 @@ pub(crate) fn run(plan: &Plan, printer: &Printer) -> Outcome {
     Outcome::Good
 }
 
-/// The step of a document; none of a library.
-fn step(
-    plan: &Plan,
-    (turn, task): (usize, &Task),
-    messages: &mut Vec<Message>,
-) -> Result<Option<Step>, Outcome> {
-    let (files, document) = loaded(task, messages)?;
-    if task.found && document.is_library() {
-        return Ok(None);
-    }
-    let folder =
-        task.output.rsplit_once('/').map_or_else(|| plan.out.clone(), |(folder, _)| plan.out.join(folder));
-    let mut refused = |list| {
-        messages.push(Message::Diagnostics(list));
-        Outcome::Errors
-    };
-    let mut names = Vec::new();
-    for variant in std::iter::once(None).chain(document.variants().into_iter().map(Some)) {
-        let options = Options {
-            variant,
-            overrides: plan.documents.set.clone(),
-            name: task.name().to_owned(),
-            path: task.path.clone(),
-            profiles: plan.profile.clone(),
-            ..Options::default()
+/// What is planned.
+struct Planned<'a> {
+    plan: &'a Plan,
+    /// Where outputs go.
+    out: &'a Path,
+    /// The project file, whose words are a part of every step.
+    project: Option<String>,
+}
+
+impl Planned<'_> {
+    /// The step of a document; none of a library.
+    fn step(
+        &self,
+        (turn, task): (usize, &Task),
+        messages: &mut Vec<Message>,
+    ) -> Result<Option<Step>, Outcome> {
+        let Self { plan, out, project } = self;
+        let (files, document) = loaded(task, messages)?;
+        if task.found && document.is_library() {
+            return Ok(None);
+        }
+        let folder =
+            task.output.rsplit_once('/').map_or_else(|| out.to_path_buf(), |(folder, _)| out.join(folder));
+        let mut refused = |list| {
+            messages.push(Message::Diagnostics(list));
+            Outcome::Errors
         };
-        names.extend(outputs(&document, &files, &options).map_err(&mut refused)?);
+        let mut names = Vec::new();
+        for variant in std::iter::once(None).chain(document.variants().into_iter().map(Some)) {
+            let options = Options {
+                variant,
+                overrides: plan.documents.overrides(&document),
+                name: task.name().to_owned(),
+                path: task.path.clone(),
+                profiles: plan.profile.clone(),
+                ..Options::default()
+            };
+            names.extend(outputs(&document, &files, &options).map_err(&mut refused)?);
+        }
+        let below = |name: &str| folder.join(name).display().to_string();
+        let outputs = names.iter().flat_map(|name| {
+            let report =
+                (!plan.no_report).then(|| below(&format!("{}.report.json", name.trim_end_matches(".glb"))));
+            std::iter::once(below(name)).chain(report)
+        });
+        let spec = shown(task, &task.path);
+        Ok(Some(Step {
+            turn,
+            inputs: files
+                .record()
+                .into_iter()
+                .filter(|file| file.found)
+                .map(|file| shown(task, &file.path))
+                .chain(project.clone())
+                .collect(),
+            outputs: outputs.collect(),
+            command: command(plan, task, (&spec, &folder)),
+            spec,
+        }))
     }
-    let below = |name: &str| folder.join(name).display().to_string();
-    let outputs = names.iter().flat_map(|name| {
-        let report =
-            (!plan.no_report).then(|| below(&format!("{}.report.json", name.trim_end_matches(".glb"))));
-        std::iter::once(below(name)).chain(report)
-    });
-    let spec = shown(task, &task.path);
-    Ok(Some(Step {
-        turn,
-        inputs: files
-            .record()
-            .into_iter()
-            .filter(|file| file.found)
-            .map(|file| shown(task, &file.path))
-            .collect(),
-        outputs: outputs.collect(),
-        command: command(plan, task, (&spec, &folder)),
-        spec,
-    }))
 }
 
 /// The command that makes a step, from the working directory.

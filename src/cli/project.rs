@@ -11,13 +11,112 @@ use super::arguments::{Documents, RecordOptions};
 use super::output::Printer;
 use super::records::Records;
 use super::turns::{Message, Turns};
-use crate::language::Document;
+use crate::compile::profile_of;
+use crate::gltf::Profile;
 use crate::language::source::DiskFiles;
-use crate::project::{Task, collect, reason};
+use crate::language::{Document, PROJECT_FILE};
+use crate::project::{Project, ProjectFault, Task, collect, reason};
 
-/// The documents that the arguments name, of which one shard; `None` after a complaint.
-pub(crate) fn tasks(documents: &Documents, printer: &Printer) -> Option<Vec<Task>> {
-    let mut tasks = tasks_at(&documents.paths, documents.root.as_deref(), printer)?;
+/// The documents that the arguments name, and the project that these belong to; how the command ends after a complaint. Outputs of
+/// single documents too have the place that they have in the project, unless another folder is named for them.
+pub(crate) fn named(
+    documents: &mut Documents,
+    out: Option<&PathBuf>,
+    printer: &Printer,
+) -> Result<(Option<Project>, Vec<Task>), Outcome> {
+    let project = project(documents, printer)?;
+    let mut tasks = tasks(documents, project.as_ref(), printer)?;
+    if let (Some(project), None) = (&project, out) {
+        tasks = tasks.into_iter().map(|task| project.placed(task)).collect();
+    }
+    Ok((project, tasks))
+}
+
+/// The project of the arguments: the file that they name, else the one of the working directory, unless they name documents that
+/// lie elsewhere. The arguments take from it what they do not say themselves.
+fn project(documents: &mut Documents, printer: &Printer) -> Result<Option<Project>, Outcome> {
+    let named = match documents.paths.as_slice() {
+        [file] if file.file_name().is_some_and(|name| name == PROJECT_FILE) => Some(file.clone()),
+        _ => None,
+    };
+    let Some(file) = named.clone().or_else(project_here) else {
+        if documents.paths.is_empty() {
+            let message = format!("no document is named, and there is no {PROJECT_FILE} here or above");
+            let help =
+                format!("name documents or folders, or write a {PROJECT_FILE} with `roots = [\"specs\"]`");
+            printer.failure(&message, Some(&help));
+            return Err(Outcome::Usage);
+        }
+        return Ok(None);
+    };
+    if named.is_some() {
+        documents.paths.clear();
+    }
+    let beside = |path: &PathBuf| {
+        let root = file.parent().and_then(|root| root.canonicalize().ok());
+        path.canonicalize().ok().zip(root).is_some_and(|(path, root)| path.starts_with(root))
+    };
+    if !documents.paths.iter().all(beside) {
+        return Ok(None);
+    }
+    let project = loaded_project(&file, printer)?;
+    documents.root.get_or_insert_with(|| project.root.clone());
+    let parameters = project.file.project.parameters.iter();
+    documents.given = parameters.map(|(name, text)| (name.clone(), text.value.0.clone())).collect();
+    Ok(Some(project))
+}
+
+/// The project file of the working directory, or of the nearest folder above that has one.
+pub(crate) fn project_here() -> Option<PathBuf> {
+    std::env::current_dir().ok().and_then(|here| Project::above(&here))
+}
+
+/// A project; what is wrong with its file is said.
+pub(crate) fn loaded_project(file: &Path, printer: &Printer) -> Result<Project, Outcome> {
+    Project::load(file).map_err(|fault| match fault {
+        ProjectFault::Wrong(list) => {
+            printer.diagnostics(&list);
+            Outcome::Errors
+        }
+        ProjectFault::Unreachable(message) => {
+            printer.failure(&message, None);
+            Outcome::Files
+        }
+    })
+}
+
+/// For whom files are: what the command line says, else what the project says, if anything.
+pub(crate) fn profiles(written: &[Profile], project: Option<&Project>) -> Vec<Profile> {
+    let of_project = || project.and_then(|project| project.file.project.profiles.as_ref());
+    if written.is_empty()
+        && let Some(list) = of_project()
+    {
+        return list.value.iter().map(|name| profile_of(name.value)).collect();
+    }
+    written.to_vec()
+}
+
+/// Where outputs go: what the command line says, else what the project says, else `out`.
+pub(crate) fn out(written: Option<&PathBuf>, project: Option<&Project>) -> PathBuf {
+    let of_project = || project.map(|project| from_here(project.out()));
+    written.cloned().or_else(of_project).unwrap_or_else(|| PathBuf::from("out"))
+}
+
+/// A path from the working directory, where it lies in that.
+pub(crate) fn from_here(path: PathBuf) -> PathBuf {
+    let here = std::env::current_dir().and_then(|here| here.canonicalize());
+    here.ok().and_then(|here| path.strip_prefix(here).ok().map(Path::to_path_buf)).unwrap_or(path)
+}
+
+/// The documents that the arguments name, or all of the project, of which one shard.
+fn tasks(documents: &Documents, project: Option<&Project>, printer: &Printer) -> Result<Vec<Task>, Outcome> {
+    let mut tasks = match project {
+        Some(project) if documents.paths.is_empty() => project.tasks().map_err(|list| {
+            printer.diagnostics(&list);
+            Outcome::Errors
+        })?,
+        _ => tasks_at(&documents.paths, documents.root.as_deref(), printer).ok_or(Outcome::Files)?,
+    };
     if let Some(shard) = documents.shard {
         let mut turn = 0;
         tasks.retain(|_| {
@@ -25,7 +124,7 @@ pub(crate) fn tasks(documents: &Documents, printer: &Printer) -> Option<Vec<Task
             (turn - 1) % shard.of == shard.number - 1
         });
     }
-    Some(tasks)
+    Ok(tasks)
 }
 
 /// The documents at some paths; `None` after a complaint.

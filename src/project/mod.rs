@@ -3,13 +3,15 @@
 //! Promise: a folder gives its documents in the order of their paths, whatever the file system; outputs appear whole or
 //! not at all. No promise: nothing is printed here.
 
+mod file;
 mod save;
 mod told;
 
 use std::path::{Path, PathBuf};
 
-use crate::language::Document;
 use crate::language::source::{DiskFiles, Files};
+use crate::language::{Document, PROJECT_FILE};
+pub(crate) use file::{Project, ProjectFault};
 pub(crate) use save::save;
 pub(crate) use told::Told;
 
@@ -63,12 +65,6 @@ pub(crate) fn collect(path: &Path, root: Option<&Path>) -> Result<Vec<Task>, Str
         (real.parent().map_or_else(|| real.clone(), Path::to_path_buf), vec![real.clone()])
     };
     files.sort();
-    let slashes = |path: &Path| {
-        path.components()
-            .map(|part| part.as_os_str().to_string_lossy().into_owned())
-            .collect::<Vec<_>>()
-            .join("/")
-    };
     Ok(files
         .iter()
         .map(|file| {
@@ -83,6 +79,14 @@ pub(crate) fn collect(path: &Path, root: Option<&Path>) -> Result<Vec<Task>, Str
         .collect())
 }
 
+/// A path with `/` between its parts.
+fn slashes(path: &Path) -> String {
+    path.components()
+        .map(|part| part.as_os_str().to_string_lossy().into_owned())
+        .collect::<Vec<_>>()
+        .join("/")
+}
+
 /// The working directory where the document lies in it, else the document's own folder.
 fn default_root(real: &Path) -> Result<PathBuf, String> {
     let own = if real.is_dir() { real } else { real.parent().unwrap_or(real) };
@@ -92,7 +96,7 @@ fn default_root(real: &Path) -> Result<PathBuf, String> {
     }
 }
 
-/// Folders deeper than this are not looked into: a loop of links would have no end.
+/// Folders deeper than this are not looked into. Links to folders are not followed: they may have no end.
 const DEPTH: usize = 32;
 
 fn walk(folder: &Path, files: &mut Vec<PathBuf>, depth: usize) -> std::io::Result<()> {
@@ -100,13 +104,14 @@ fn walk(folder: &Path, files: &mut Vec<PathBuf>, depth: usize) -> std::io::Resul
         let entry = entry?;
         let name = entry.file_name();
         let name = name.to_string_lossy();
-        if name.starts_with('.') || name == "kiln.toml" {
+        if name.starts_with('.') || name == PROJECT_FILE {
             continue;
         }
         let kind = entry.file_type()?;
         if kind.is_dir() && depth < DEPTH {
             walk(&entry.path(), files, depth + 1)?;
-        } else if kind.is_file() && name.ends_with(".toml") {
+        } else if name.ends_with(".toml") && (kind.is_file() || kind.is_symlink() && !entry.path().is_dir()) {
+            // A link is taken too: where it leads out of the root, or to nothing, reading it says so.
             files.push(entry.path());
         }
     }

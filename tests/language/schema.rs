@@ -1,6 +1,6 @@
 //! The schema and the reference page say what the reader does.
 
-use kiln::language::{reference, schema};
+use kiln::language::{project_schema, reference, schema};
 use serde_json::Value as Json;
 
 /// Every `$ref` of a schema.
@@ -72,8 +72,13 @@ fn the_reference_page_lists_every_table_once() {
 /// writes them anew.
 #[test]
 fn docs_hold_the_generated_page_and_schema() {
-    let pretty = serde_json::to_string_pretty(&schema()).expect("plain data") + "\n";
-    for (path, text) in [("docs/kiln.schema.json", pretty), ("docs/reference.md", reference())] {
+    let pretty = |schema| serde_json::to_string_pretty(&schema).expect("plain data") + "\n";
+    let docs = [
+        ("docs/kiln.schema.json", pretty(schema())),
+        ("docs/project.schema.json", pretty(project_schema())),
+        ("docs/reference.md", reference()),
+    ];
+    for (path, text) in docs {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
         if std::env::var_os("KILN_BLESS").is_some() {
             std::fs::write(&path, &text).expect("docs can be written");

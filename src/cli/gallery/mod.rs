@@ -14,7 +14,7 @@ use serde_json::json;
 use super::Outcome;
 use super::arguments::Gallery;
 use super::output::Printer;
-use super::project::tasks;
+use super::project::named;
 use super::three::Three;
 use crate::compile::{Compiled, Options, compile};
 use crate::language::source::Files as _;
@@ -29,8 +29,11 @@ const VIEWER: &str = include_str!("../watch/page/viewer.js");
 /// The page's look.
 const STYLE: &str = include_str!("gallery.css");
 
-pub(crate) fn run(gallery: &Gallery, printer: &Printer) -> Outcome {
-    let Some(tasks) = tasks(&gallery.documents, printer) else { return Outcome::Files };
+pub(crate) fn run(gallery: &mut Gallery, printer: &Printer) -> Outcome {
+    let tasks = match named(&mut gallery.documents, None, printer) {
+        Ok((_, tasks)) => tasks,
+        Err(outcome) => return outcome,
+    };
     let root = tasks.first().map_or(Path::new("."), |task| task.root.as_path());
     let three = match Three::find(gallery.three.as_deref(), root) {
         Ok(three) => three,
@@ -87,7 +90,7 @@ fn entry(task: &Task, gallery: &Gallery, printer: &Printer) -> Result<Option<Ent
         return Ok(None);
     }
     let options = Options {
-        overrides: gallery.documents.set.clone(),
+        overrides: gallery.documents.overrides(&document),
         name: task.name().to_owned(),
         path: task.path.clone(),
         ..Options::default()

@@ -39,6 +39,7 @@ impl Desk {
             })
         };
         let mut items = Vec::new();
+        let guide = self.guide(params["textDocument"]["uri"].as_str()?);
         match kind {
             Kind::Header | Kind::Key => {
                 let here = |key: &str| {
@@ -52,7 +53,7 @@ impl Desk {
                         .filter(stands)
                         .any(|other| !other.range.contains(&place) && other.range.end != place)
                 };
-                for word in self.guide.keys(&path).into_iter().filter(|word| !here(&word.text)) {
+                for word in guide.keys(&path).into_iter().filter(|word| !here(&word.text)) {
                     let follows = sheet.text[replaced.end..].trim_start_matches([' ', '\t']);
                     let text = if kind == Kind::Key && !follows.starts_with('=') {
                         format!("{} = ", word.text)
@@ -70,12 +71,12 @@ impl Desk {
                     .extend(given.map(|name| item(&name.text, &name.text, REFERENCE, "A parameter.", &word)));
             }
             Kind::Value => {
-                for word in self.guide.words(&path) {
+                for word in guide.words(&path) {
                     let bare = word.trim_matches('"');
                     let text = if quoted { bare } else { word.as_str() };
                     items.push(item(bare, text, VALUE, "", &replaced));
                 }
-                if let Some(section) = self.guide.section(&path) {
+                if let Some(section) = guide.section(&path) {
                     let uri = params["textDocument"]["uri"].as_str()?;
                     for (_, _, names) in self.family(uri) {
                         for name in names.iter().filter(|name| name.given && name.section == section) {
@@ -97,7 +98,7 @@ impl Desk {
         let (uri, sheet, place) = self.asked(params)?;
         let part = sheet.scan.part(place)?.clone();
         let shown_range = range(&sheet.text, &part.range, self.encoding);
-        let mut text = self.guide.about(&part.own_path());
+        let mut text = self.guide(uri).about(&part.own_path());
         let named = match (&part.kind, &*part.own_path()) {
             (Kind::Header, [Step::Key(section), Step::Key(name), ..]) => {
                 Some((section.clone(), name.clone()))

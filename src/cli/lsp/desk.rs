@@ -14,9 +14,9 @@ use super::text::{Encoding, file_of, uri_of};
 use crate::build;
 use crate::compile::{Compiled, Options, compile, outputs};
 use crate::geometry::curve::length;
-use crate::language::Document;
 use crate::language::diagnostic::Diagnostics;
 use crate::language::source::{DiskFiles, FileError, FileRecord, Files, join};
+use crate::language::{Document, PROJECT_FILE, ProjectFile};
 use crate::project::{Task, Told};
 
 /// An open document.
@@ -32,7 +32,8 @@ pub(super) struct Sheet {
 
 /// All open documents by their URIs.
 pub(super) struct Desk {
-    pub(super) guide: Guide,
+    documents: Guide,
+    projects: Guide,
     pub(super) encoding: Encoding,
     /// The folder that the editor has open.
     root: Option<PathBuf>,
@@ -59,12 +60,18 @@ impl Files for Shown<'_> {
 impl Desk {
     pub(super) fn new(root: Option<PathBuf>, encoding: Encoding) -> Self {
         let root = root.and_then(|root| root.canonicalize().ok());
-        Self { guide: Guide::new(), encoding, root, sheets: BTreeMap::new() }
+        let (documents, projects) = (Guide::of_documents(), Guide::of_projects());
+        Self { documents, projects, encoding, root, sheets: BTreeMap::new() }
+    }
+
+    /// What may stand in a text.
+    pub(super) fn guide(&self, uri: &str) -> &Guide {
+        if is_project(uri) { &self.projects } else { &self.documents }
     }
 
     pub(super) fn put(&mut self, uri: &str, text: String) {
         let scan = scan(&text);
-        let names = names(&text, &scan, &self.guide);
+        let names = names(&text, &scan, self.guide(uri));
         let found = self.sheets.remove(uri).and_then(|before| before.found);
         self.sheets.insert(uri.to_owned(), Sheet { text, scan, names, found, made: None });
     }
@@ -94,15 +101,19 @@ impl Desk {
     }
 
     /// Whether a text has a section of our language: editors show the server all TOML, of other programs too.
-    fn is_ours(&self, sheet: &Sheet) -> bool {
+    fn is_ours(&self, uri: &str, sheet: &Sheet) -> bool {
+        if is_project(uri) {
+            return true;
+        }
         let first = |part: &Part| part.kind != Kind::Value && part.path.is_empty();
         let mut words = sheet.scan.parts.iter().filter(|part| first(part));
-        words.any(|part| self.guide.sections().any(|section| section == part.text))
+        words.any(|part| self.documents.sections().any(|section| section == part.text))
     }
 
     /// Looks for what is wrong with a document: all of it where `whole`, else what shows before surfaces are cut.
     pub(super) fn look(&mut self, uri: &str, whole: bool) {
-        let task = self.task(uri).filter(|_| self.sheets.get(uri).is_some_and(|sheet| self.is_ours(sheet)));
+        let task =
+            self.task(uri).filter(|_| self.sheets.get(uri).is_some_and(|sheet| self.is_ours(uri, sheet)));
         let found = task.and_then(|task| {
             let files = self.files(&task)?;
             // A fault of ours must not take the editor's server with it.
@@ -125,7 +136,7 @@ impl Desk {
         };
         for id in sources.files().filter(|id| sources.path(*id) != task.path) {
             let text = sources.text(id).to_owned();
-            let names = names(&text, &scan(&text), &self.guide);
+            let names = names(&text, &scan(&text), &self.documents);
             all.push((uri_of(&task.root.join(sources.path(id))), text, names));
         }
         all
@@ -174,6 +185,11 @@ impl Desk {
     }
 }
 
+/// Whether a path is that of a project file.
+fn is_project(path: &str) -> bool {
+    path.rsplit('/').next() == Some(PROJECT_FILE)
+}
+
 /// A number for a person.
 fn short(number: f64) -> String {
     let text = format!("{number:.6}");
@@ -185,6 +201,9 @@ fn options(task: &Task, variant: Option<String>) -> Options {
 }
 
 fn diagnostics(task: &Task, files: &Shown<'_>, whole: bool) -> Option<Diagnostics> {
+    if is_project(&task.path) {
+        return ProjectFile::load(&task.path, files).err();
+    }
     let document = match Document::load(&task.path, files) {
         Ok(document) => document,
         Err(list) => return Some(list),

@@ -1,4 +1,4 @@
-//! What the language has to say of a place: the JSON Schema of documents, followed from the top.
+//! What the language has to say of a place: a JSON Schema, followed from the top.
 
 use serde_json::{Map, Value as Json};
 
@@ -21,8 +21,14 @@ pub(super) struct Word {
 }
 
 impl Guide {
-    pub(super) fn new() -> Self {
+    /// That of documents.
+    pub(super) fn of_documents() -> Self {
         Self { schema: crate::language::schema() }
+    }
+
+    /// That of project files.
+    pub(super) fn of_projects() -> Self {
+        Self { schema: crate::language::project_schema() }
     }
 
     /// The sections of documents.
@@ -187,7 +193,7 @@ mod tests {
 
     #[test]
     fn tables_name_their_keys() {
-        let guide = Guide::new();
+        let guide = Guide::of_documents();
         let keys = |at: &str| guide.keys(&path(at)).into_iter().map(|word| word.text).collect::<Vec<_>>();
         assert!(keys("").contains(&"material".to_owned()));
         assert!(keys("shape.a").contains(&"revolve".to_owned()));
@@ -202,7 +208,7 @@ mod tests {
 
     #[test]
     fn values_know_their_words_and_names() {
-        let guide = Guide::new();
+        let guide = Guide::of_documents();
         assert!(guide.words(&path("up")).contains(&"\"z\"".to_owned()));
         assert!(guide.words(&path("material.a.double-sided")).contains(&"true".to_owned()));
         assert_eq!(guide.section(&path("shape.a.trimmed.of")), Some("shape"));

@@ -91,7 +91,7 @@ mod tests {
     fn names_lead_to_what_they_name() {
         let text = "[parameters]\nheight = 2\n[curve.rim.circle]\nradius = \"= height / 2\"\n[shape.rim]\nmaterial = \"gold\"\n\
                     [shape.rim.extrude]\nprofile = \"rim\"\nheight = 1\n[material.gold]\ncolor = \"#ffcc00\"\n";
-        let all = names(text, &scan(text), &Guide::new());
+        let all = names(text, &scan(text), &Guide::of_documents());
         let uses = |mark: &str| {
             let place = at(&all, text.find(mark).expect("the mark") + 1).expect("a name");
             let all = all.iter().filter(|name| same(name, place));

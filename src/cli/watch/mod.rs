@@ -24,7 +24,7 @@ use serde_json::json;
 
 use super::Outcome;
 use super::arguments::Watch;
-use super::baked::{line, report_of};
+use super::baked::line;
 use super::output::Printer;
 use super::project::task;
 use super::three::Three;
@@ -172,7 +172,7 @@ impl Watcher<'_> {
 }
 
 fn write(folder: &Path, compiled: &Compiled) -> std::io::Result<()> {
-    let report = report_of(compiled)?;
+    let report = compiled.report_file()?;
     let asset = (compiled.file.as_str(), compiled.bytes.as_slice());
     let report = report.as_ref().map(|(name, text)| (name.as_str(), text.as_slice()));
     let list: Vec<(&str, &[u8])> = std::iter::once(asset).chain(report).collect();

@@ -433,6 +433,15 @@ codes! {
     /// a collider without volume
     FlatCollider = "K0995";
 
+    /// a root of a project has no document
+    EmptyRoot = "K1030";
+    /// roots of a project overlap
+    OverlappingRoots = "K1031";
+    /// two documents would be written to one file
+    SameOutput = "K1032";
+    /// no document has a parameter of the project
+    ProjectParameter = "K1033";
+
     /// levels of detail that an engine does not read
     EngineLevels = "K1050";
     /// colliders that an engine does not read

@@ -536,6 +536,14 @@ examples! {
     FlatCollider: "A body that things bounce off encloses a volume. A flat shape has none: a thin box in its place serves better.",
         "[shape.a.disk]\nradius = 1\n[collider.c]\nshape = \"a\"" =>
         "[shape.a.cylinder]\nradius = 1\nheight = 0.02\n[collider.c]\nshape = \"a\"";
+    EmptyRoot: "Each of the `roots` in kiln.toml is a document, or a folder that has documents in it or in its folders. Files whose names do not end in `.toml`, or begin with a dot, are none.",
+        "" => "";
+    OverlappingRoots: "Each document of a project belongs to one root, for its output has the place that it has below that. A root that lies in another one, or is named twice, would bake its documents twice.",
+        "" => "";
+    SameOutput: "An output is called as its document is and lies where that lies below its root: specs/chess/pawn.toml becomes chess/pawn.glb for the root `specs`. Two roots may have documents of one name; they would be written over each other. Upper and lower case count as the same, as on some file systems.",
+        "" => "";
+    ProjectParameter: "`[parameters]` in kiln.toml sets parameters of all documents that have them. A name that no document has is likely misspelt.",
+        "" => "";
     EngineLevels: "A profile for an engine has levels of detail in the form that its loader takes: by `MSFT_lod` for Babylon.js and, with a plugin, three.js; in files of their own for the others, whose loaders show all nodes of a scene and know no levels.",
         "[output]\nprofiles = [\"bevy\"]\n[lod]\nlevels = 2\nform = \"msft-lod\"\n[shape.a.sphere]\nradius = 1" =>
         "[output]\nprofiles = [\"bevy\"]\n[lod]\nlevels = 2\n[shape.a.sphere]\nradius = 1";

@@ -34,6 +34,14 @@ pub(crate) fn load(main: &str, files: &dyn Files) -> (Document, Vec<Diagnostic>)
     (Document { sources, base, variants: variants.unwrap_or_default() }, loader.found)
 }
 
+/// Reads one file that includes no other: the texts, what stands in it where it can be read, and what was wrong.
+pub(crate) fn single(path: &str, files: &dyn Files) -> (SourceMap, Option<Table>, Vec<Diagnostic>) {
+    let mut loader =
+        Loader { files, sources: SourceMap::new(), found: Vec::new(), seen: Vec::new(), open: Vec::new() };
+    let table = loader.table(path, path, Span::NONE);
+    (loader.sources, table, loader.found)
+}
+
 struct Loader<'f> {
     files: &'f dyn Files,
     sources: SourceMap,
@@ -48,16 +56,7 @@ impl Loader<'_> {
     /// Reads one file and what it includes, into one table; `None` when it cannot be read.
     fn file(&mut self, path: &str, written: &str, asked: Span) -> Option<Table> {
         self.seen.push(path.to_owned());
-        let bytes = match self.files.read(path) {
-            Ok(bytes) => bytes,
-            Err(error) => {
-                self.unreadable(&error, written, asked);
-                return None;
-            }
-        };
-        let id = self.add(path, &bytes)?;
-        let (mut table, found) = parse(&self.sources, id);
-        self.found.extend(found);
+        let mut table = self.table(path, written, asked)?;
         let include = table.entries.shift_remove("include");
         self.open.push((path.to_owned(), asked));
         for (path, written, span) in include.map(|entry| self.paths(path, &entry.value)).unwrap_or_default() {
@@ -68,6 +67,21 @@ impl Loader<'_> {
             }
         }
         self.open.pop();
+        Some(table)
+    }
+
+    /// What stands in a file.
+    fn table(&mut self, path: &str, written: &str, asked: Span) -> Option<Table> {
+        let bytes = match self.files.read(path) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                self.unreadable(&error, written, asked);
+                return None;
+            }
+        };
+        let id = self.add(path, &bytes)?;
+        let (table, found) = parse(&self.sources, id);
+        self.found.extend(found);
         Some(table)
     }
 

@@ -5,6 +5,8 @@ mod load;
 mod overlay;
 mod parameters;
 
+pub(crate) use load::single;
+
 use std::sync::Arc;
 
 use indexmap::IndexMap;
@@ -59,6 +61,20 @@ impl Document {
     #[must_use]
     pub fn variants(&self) -> Vec<String> {
         self.variants.entries.keys().cloned().collect()
+    }
+
+    /// The names of its parameters, those of its variants too.
+    #[must_use]
+    pub fn parameters(&self) -> Vec<String> {
+        let of_variants = self.variants.entries.values().filter_map(|entry| entry.value.table());
+        let tables = std::iter::once(&self.base).chain(of_variants);
+        let mut names: Vec<String> = tables
+            .filter_map(|table| table.get("parameters")?.table())
+            .flat_map(|parameters| parameters.entries.keys().cloned())
+            .collect();
+        names.sort();
+        names.dedup();
+        names
     }
 
     /// The texts of the document, for rendering what is said about them.

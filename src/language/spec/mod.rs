@@ -48,6 +48,7 @@ mod point;
 mod polygon;
 mod primitive;
 mod profile;
+mod project;
 mod quadric;
 mod reach;
 mod reader;
@@ -135,6 +136,7 @@ pub use primitive::{
     Solid, Sphere, Torus, Tube,
 };
 pub use profile::{Axis, Bevel, BevelEnds, BevelForm, Extrude, Fill, Revolve};
+pub use project::project_schema;
 pub use quadric::{Quadric, QuadricClip, QuadricWithin, Within};
 pub use reach::{Reach, ReachRule};
 pub use reference::{
@@ -162,5 +164,6 @@ pub use whole::schema;
 pub use wire::Wire;
 
 pub(crate) use name::{check_name, kebab};
-pub(crate) use reader::backtick;
+pub(crate) use project::{InnerPath, Project};
+pub(crate) use reader::{backtick, read_whole};
 pub(crate) use section::{default_text, read_spec};

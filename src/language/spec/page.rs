@@ -5,6 +5,7 @@ use std::fmt::Write;
 use serde_json::{Map, Value as Json};
 
 use crate::language::expression::FUNCTIONS;
+use crate::language::spec::project::ordered_project;
 use crate::language::spec::schema::ORDER;
 use crate::language::spec::section::SECTIONS;
 use crate::language::spec::whole::ordered;
@@ -213,6 +214,13 @@ pub fn reference() -> String {
         }
     }
     page.push_str(&expressions());
+    let project = ordered_project();
+    page.push_str(
+        "\n## A project\n\nWhat stands in `kiln.toml`; `kiln bake` without paths bakes all of it.\n",
+    );
+    for name in ["project", "cache"] {
+        page.push_str(&table(name, &project["$defs"][name]));
+    }
     page
 }
 

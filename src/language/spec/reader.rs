@@ -135,6 +135,17 @@ fn hint_expression(report: Diagnostic, text: &str, span: Span) -> Diagnostic {
     report
 }
 
+/// Reads a whole text as one table, and what was wrong with it.
+pub(crate) fn read_whole<T: Read>(
+    table: Table,
+    start: Span,
+    sources: &SourceMap,
+) -> (Option<T>, Vec<Diagnostic>) {
+    let mut reader = Reader::new(sources);
+    let read = T::read(&Value::new(start, Data::Table(table)), &mut reader);
+    (read, reader.diagnostics)
+}
+
 /// The entries of one table, taken by name; what remains is unknown.
 #[derive(Debug)]
 pub(crate) struct Fields<'v> {

@@ -1,0 +1,120 @@
+//! What a project file, `kiln.toml`, can say: its documents, for whom they are baked, and what is remembered.
+
+use indexmap::IndexMap;
+use serde_json::{Value as Json, json};
+
+use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::{FileError, join};
+use crate::language::spec::check::Check;
+use crate::language::spec::construct::table;
+use crate::language::spec::document::OutputProfile;
+use crate::language::spec::limit::Bytes;
+use crate::language::spec::morph::ParameterValue;
+use crate::language::spec::reader::{Read, Reader};
+use crate::language::spec::schema::{ORDER, Schemas};
+use crate::language::spec::spanned::Sp;
+use crate::language::value::{Data, Value};
+
+table! {
+    /// A project, `kiln.toml`: it stands in the folder that no document of it reads outside of. What is said to a command takes
+    /// the place of what is said here.
+    "project" pub(crate) Project {
+        /// Folders of documents, or documents; paths are relative to this file. Among the outputs a document has the place that it
+        /// has below its root.
+        roots: Vec<Sp<InnerPath>> => Check::items(1);
+        /// Where outputs go; the folder `out` beside this file when it is not written.
+        out: Option<Sp<InnerPath>>;
+        /// For whom files are, whatever documents say: one file for each of them.
+        profiles: Option<Sp<Vec<Sp<OutputProfile>>>> => Check::items(1);
+        /// Parameters of all documents that have one of that name, as `--set` gives them.
+        parameters: IndexMap<String, Sp<ParameterText>> = IndexMap::new();
+        /// What was baked before.
+        cache: Option<Sp<ProjectCache>>;
+    }
+}
+
+table! {
+    /// What was baked before, and where it is kept.
+    "cache" pub(crate) ProjectCache {
+        /// The folder, relative to this file.
+        folder: Option<Sp<InnerPath>>;
+        /// How much the folder may take, in bytes or as in `"2 GB"`; 1 GB when it is not written. What was not used for the longest
+        /// time goes first.
+        limit: Option<Sp<Bytes>>;
+    }
+}
+
+/// A path inside the project: of a file, or of a folder; `.` is that of the project file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct InnerPath {
+    /// As it is written.
+    pub(crate) written: String,
+    /// From the folder of the project file, with `/` between its parts; empty for that folder.
+    pub(crate) resolved: String,
+}
+
+/// The value of a parameter, as the command line writes it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct ParameterText(pub(crate) String);
+
+impl Read for InnerPath {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        let Data::String(written) = &value.data else {
+            reader.mismatch(value, "a path");
+            return None;
+        };
+        let resolved = match join("", written) {
+            Ok(resolved) => resolved,
+            Err(FileError::Folder) if !written.is_empty() => String::new(),
+            Err(fault) => {
+                let label = match fault {
+                    FileError::Absolute => "write it relative to this file",
+                    FileError::Folder => "write `.` for the folder of this file",
+                    ref other => other.label(),
+                };
+                let report = Diagnostic::error(Code::OutsideRoot, fault.message(written));
+                reader.report(report.at(value.span, label));
+                return None;
+            }
+        };
+        Some(Self { written: written.clone(), resolved })
+    }
+
+    fn schema(_: &mut Schemas) -> Json {
+        json!({ "type": "string" })
+    }
+}
+
+impl Read for ParameterText {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        ParameterValue::read(value, reader)?;
+        Some(Self(match &value.data {
+            Data::String(text) => text.clone(),
+            _ => reader.sources.snippet(value.span).to_owned(),
+        }))
+    }
+
+    fn schema(schemas: &mut Schemas) -> Json {
+        ParameterValue::schema(schemas)
+    }
+}
+
+/// The JSON Schema (draft 2020-12) of a project file.
+#[must_use]
+pub fn project_schema() -> Json {
+    let mut schema = ordered_project();
+    for definition in schema["$defs"].as_object_mut().into_iter().flat_map(|all| all.values_mut()) {
+        definition.as_object_mut().map(|object| object.remove(ORDER));
+    }
+    schema
+}
+
+/// The schema, with the order of properties beside them.
+pub(crate) fn ordered_project() -> Json {
+    let mut schemas = Schemas::default();
+    let mut schema = Project::schema(&mut schemas);
+    schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
+    schema["title"] = json!("Kiln project");
+    schema["$defs"] = Json::Object(schemas.into_definitions());
+    schema
+}
