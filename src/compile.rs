@@ -247,6 +247,7 @@ impl Made<'_> {
         let colliders = realize::colliders(&built.model, &coarser, &shapes, &scene);
         scene.colliders = colliders.map_err(|errors| refusals(built, errors))?;
         collider::hold(&mut scene, engine::collider_form(profile, spec));
+        warnings.extend(collider::rough(built, &scene));
         warnings.extend(engine::unread(profile, spec));
         let scenes = lod::files(scene, engine::level_form(profile, spec));
         let file =
@@ -440,6 +441,7 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
             (Code::NoLength, "write another `axis`, or `from` and `to` inside the shape")
         }
         RealizeError::FlatCollider { .. } => (Code::FlatCollider, "see its collider"),
+        RealizeError::ColliderParts { .. } => (Code::NoParts, "see its collider"),
         RealizeError::Unweighted { .. } | RealizeError::SkinnedWire { .. } => {
             (Code::Unweighted, "see its skin")
         }

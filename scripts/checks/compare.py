@@ -299,7 +299,7 @@ def colliders(asset: str, report: Facts, one: Measured) -> Iterator[Finding]:
         volume = abs(claim["volume"])
         gap = abs(claim["volume"] - seen["volume"])
         yield Finding(asset, f"{place}.volume", one.tool, claim["volume"], seen["volume"], gap, 1e-5 * volume)
-        for fact, told in (("vertices", claim.get("vertices")), ("convex", True)):
+        for fact, told in (("vertices", claim.get("vertices")), ("parts", claim.get("parts")), ("convex", True)):
             if fact in seen:
                 yield Finding(asset, f"{place}.{fact}", one.tool, told, seen[fact], differs(told, seen[fact]), 0.0)
         if claim["of"] in seen["outside"]:

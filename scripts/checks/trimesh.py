@@ -48,21 +48,32 @@ def measure(path: Path) -> finding.Measured:
 def colliders(path: Path, scene: trimesh.Scene) -> dict[str, dict[str, Any]]:
     """The bodies in the extras of nodes, by name: volume, corners of hulls, and how far meshes reach out of them."""
     meshes = {name: np.asarray(mesh.vertices) for name, mesh in scene.geometry.items()}
-    found = {}
+    wholes: dict[str, list[dict[str, Any]]] = {}
     for node in Document(path).json.get("nodes", []):
         for told in node.get("extras", {}).get("colliders", []):
-            x, y, z, w = told["rotation"]
-            turn = trimesh.transformations.quaternion_matrix([w, x, y, z])[:3, :3]
-            made = body(told)
-            facts: dict[str, Any] = {"volume": float(made.volume)}
-            if told["shape"] == "hull":
-                facts |= {"vertices": len(told["points"]), "convex": bool(made.is_convex and made.is_watertight)}
-            facts["outside"] = {
-                name: float(outside(told, made, (points - told["translation"]) @ turn))
-                for name, points in meshes.items()
-            }
-            found[told["name"]] = facts
+            wholes.setdefault(told.get("part-of", told["name"]), []).append(told)
+    found = {}
+    for whole, parts in wholes.items():
+        made = [body(told) for told in parts]
+        facts: dict[str, Any] = {"volume": float(sum(one.volume for one in made))}
+        if "part-of" in parts[0]:
+            facts["parts"] = len(parts)
+        if parts[0]["shape"] == "hull":
+            facts["vertices"] = sum(len(told["points"]) for told in parts)
+            facts["convex"] = all(one.is_convex and one.is_watertight for one in made)
+        facts["outside"] = {name: away(parts, made, points) for name, points in meshes.items()}
+        found[whole] = facts
     return found
+
+
+def away(parts: list[dict[str, Any]], made: list[Any], points: NDArray[np.float64]) -> float:
+    """How far the farthest of some points is outside of all parts."""
+    each = []
+    for told, one in zip(parts, made, strict=True):
+        x, y, z, w = told["rotation"]
+        turn = trimesh.transformations.quaternion_matrix([w, x, y, z])[:3, :3]
+        each.append(outside(told, one, (points - told["translation"]) @ turn))
+    return max(0.0, float(np.min(each, axis=0).max()))
 
 
 def body(told: dict[str, Any]) -> Any:
@@ -78,8 +89,8 @@ def body(told: dict[str, Any]) -> Any:
     return kind(radius=told["radius"], height=told["height"])
 
 
-def outside(told: dict[str, Any], made: Any, points: NDArray[np.float64]) -> float:
-    """How far the farthest of some points is outside of a body; of hulls how far above the plane of a face."""
+def outside(told: dict[str, Any], made: Any, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How far points are outside of a body, less than 0 inside; of hulls how far above the plane of a face."""
     height = told.get("height", 0.0)
     across, along = np.hypot(points[:, 0], points[:, 2]), np.abs(points[:, 1])
     if told["shape"] == "box":
@@ -93,7 +104,7 @@ def outside(told: dict[str, Any], made: Any, points: NDArray[np.float64]) -> flo
     else:
         planes = made.face_normals
         away = (points @ planes.T - np.einsum("ij,ij->i", planes, made.triangles[:, 0])).max(axis=1)
-    return max(0.0, float(away.max()))
+    return np.asarray(away)
 
 
 def distance(one: trimesh.Trimesh, other: trimesh.Trimesh) -> float:

@@ -5,6 +5,12 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::spec::{self, ColliderFit};
 use crate::model::{Collider, Fit};
 
+/// The most convex parts where none are written.
+const PARTS: u32 = 16;
+
+/// Concavity where none is written, as part of the diagonal.
+const CONCAVITY: f64 = 0.03;
+
 impl Builder<'_> {
     pub(super) fn colliders(&mut self) {
         let spec = self.spec;
@@ -40,7 +46,16 @@ impl Builder<'_> {
             ColliderFit::Capsule => Fit::Capsule,
             ColliderFit::Cylinder => Fit::Cylinder,
             ColliderFit::Hull => Fit::Hull,
+            ColliderFit::Parts => Fit::Parts,
         };
-        Some(Collider { name: name.to_owned(), shape, nodes, fit, vertices: written.vertices.value })
+        Some(Collider {
+            name: name.to_owned(),
+            shape,
+            nodes,
+            fit,
+            vertices: written.vertices.value,
+            parts: written.parts.as_ref().map_or(PARTS, |parts| parts.value),
+            concavity: written.concavity.as_ref().map_or(CONCAVITY, |concavity| concavity.value),
+        })
     }
 }

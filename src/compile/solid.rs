@@ -55,6 +55,7 @@ fn advice(built: &Built, shape: ShapeHandle, fault: &SolidFault) -> (Code, &'sta
         SolidFault::TooMuch { .. } => {
             (Code::LimitPassed, "write a coarser `tolerance`, or round a simpler shape")
         }
+        SolidFault::Scattered { .. } => (Code::LimitPassed, "name a shape of fewer bodies"),
         SolidFault::Missing => (Code::MissingFeature, "build Kiln with `features = [\"csg\"]`"),
         SolidFault::Engine(_) => (Code::NoSolid, "this is a bug of Kiln; please report it with the document"),
     }

@@ -57,6 +57,9 @@ pub(super) fn write(root: &mut Root, binary: &mut Binary, scene: &Scene) -> Vec<
 fn numbers(collider: &Collider) -> Value {
     let mut told = json!({ "name": collider.name, "shape": collider.body.kind() });
     let mut say = |key: &str, value: Value| told[key] = value;
+    if let Some(part) = &collider.part {
+        say("part-of", json!(part.of));
+    }
     say("translation", json!(collider.translation.as_vec3().to_array()));
     say("rotation", json!(collider.rotation.as_quat().to_array()));
     match &collider.body {

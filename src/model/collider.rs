@@ -15,6 +15,10 @@ pub struct Collider {
     pub fit: Fit,
     /// The most vertices of a hull.
     pub vertices: u32,
+    /// The most convex parts.
+    pub parts: u32,
+    /// How far from convex parts may be, as part of the diagonal of the shape's box.
+    pub concavity: f64,
 }
 
 /// What body stands for a shape.
@@ -32,4 +36,6 @@ pub enum Fit {
     Cylinder,
     /// The hull.
     Hull,
+    /// Hulls of parts.
+    Parts,
 }

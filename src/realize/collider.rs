@@ -1,19 +1,22 @@
 //! Bodies for physics: what a shape is by its recipe, or what encloses its triangles.
 //!
 //! Promise: a shape that is a box, a ball, a capsule or a cylinder gives exactly that body, by the numbers of its recipe and not
-//! of its triangles, whatever placement moves, turns or evenly scales it. Every vertex of any other lies in its body.
+//! of its triangles, whatever placement moves, turns or evenly scales it. Every vertex of any other lies in its body, or in one
+//! of its parts.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::shape::{self, Maker};
 use super::{Options, RealizeError};
 use crate::geometry::curve::AnyCurve;
+use crate::geometry::mesh::{Mesh, Wire};
 use crate::geometry::number::Bounds;
 use crate::geometry::solid::{
-    Round, enclosing_capsule, enclosing_cylinder, enclosing_hull, enclosing_radius,
+    ConvexPart, Decomposing, Round, SolidFault, decompose, enclosing_capsule, enclosing_cylinder,
+    enclosing_hull, enclosing_radius,
 };
 use crate::model::{self, Fit, Model, Recipe, ShapeHandle};
-use crate::scene::{Body, Collider, Scene};
+use crate::scene::{Body, Collider, ColliderPart, Scene};
 
 /// Part of a length within which two are equal.
 const EQUAL: f64 = 1e-9;
@@ -35,67 +38,83 @@ pub fn colliders(
     let mut errors = Vec::new();
     for (index, collider) in model.colliders.iter().enumerate() {
         match body(model, options, (index, collider), shapes, scene) {
-            Ok((placed, exact)) => all.extend(of_nodes(model, collider, &placed, exact)),
+            Ok(made) => all.extend(of_nodes(model, collider, &made)),
             Err(error) => errors.push((collider.shape, error)),
         }
     }
     if errors.is_empty() { Ok(all) } else { Err(errors) }
 }
 
-fn of_nodes<'a>(
-    model: &'a Model,
-    collider: &'a model::Collider,
-    (body, map): &'a Placed,
+/// The bodies that stand for a shape.
+struct Made {
+    bodies: Vec<Placed>,
+    /// Whether they are the shape itself.
     exact: bool,
-) -> impl Iterator<Item = Collider> + 'a {
-    let many = collider.nodes.len() > 1;
-    collider.nodes.iter().map(move |node| Collider {
-        // Nodes that show one shape have a collider each.
-        name: if many {
-            format!("{}.{}", collider.name, model.nodes[*node].name)
-        } else {
-            collider.name.clone()
-        },
-        shape: model.shape(collider.shape).name.clone(),
-        node: *node,
-        holder: None,
-        body: body.clone(),
-        translation: map.translation,
-        rotation: DQuat::from_mat3(&map.matrix3).normalize(),
-        exact,
-    })
+    /// Of several that stand for parts how far from convex each is, and may be, metres.
+    concavities: Option<(Vec<f64>, f64)>,
 }
 
-/// The body of a collider in metres, and whether it is the shape itself.
+fn of_nodes(model: &Model, collider: &model::Collider, made: &Made) -> Vec<Collider> {
+    let many = collider.nodes.len() > 1;
+    let mut all = Vec::new();
+    for node in &collider.nodes {
+        // Nodes that show one shape have a collider each.
+        let own = &collider.name;
+        let name = if many { format!("{own}.{}", model.nodes[*node].name) } else { own.clone() };
+        for (number, (body, map)) in made.bodies.iter().enumerate() {
+            let part = made.concavities.as_ref().map(|(concavities, allowed)| ColliderPart {
+                of: name.clone(),
+                concavity: concavities[number],
+                allowed: *allowed,
+            });
+            all.push(Collider {
+                name: if part.is_some() { format!("{name}-{number:02}") } else { name.clone() },
+                shape: model.shape(collider.shape).name.clone(),
+                node: *node,
+                holder: None,
+                body: body.clone(),
+                translation: map.translation,
+                rotation: DQuat::from_mat3(&map.matrix3).normalize(),
+                exact: made.exact,
+                part,
+            });
+        }
+    }
+    all
+}
+
+/// The bodies of a collider, in metres.
 fn body(
     model: &Model,
     options: &Options,
     (index, collider): (usize, &model::Collider),
     shapes: &[ShapeHandle],
     scene: &Scene,
-) -> Result<(Placed, bool), RealizeError> {
+) -> Result<Made, RealizeError> {
+    let one = |placed: Placed, exact: bool| Made { bodies: vec![placed], exact, concavities: None };
     let asked = |body: &Body| match collider.fit {
         Fit::Auto => true,
         Fit::Box => matches!(body, Body::Box { .. }),
         Fit::Sphere => matches!(body, Body::Sphere { .. }),
         Fit::Capsule => matches!(body, Body::Capsule { .. }),
         Fit::Cylinder => matches!(body, Body::Cylinder { .. }),
-        Fit::Hull => false,
+        Fit::Hull | Fit::Parts => false,
     };
     let own = simple(model, collider.shape).and_then(|(body, map)| scaled(body, model.frame.map() * map));
     if let Some(own) = own.filter(|(body, _)| asked(body)) {
-        return Ok((own, true));
+        return Ok(one(own, true));
     }
-    let points = match shapes.iter().position(|shape| *shape == collider.shape) {
-        Some(geometry) => {
-            points_of(&scene.geometries[geometry].mesh.points, &scene.geometries[geometry].wire)
-        }
+    let made;
+    let (mesh, wire) = match shapes.iter().position(|shape| *shape == collider.shape) {
+        Some(geometry) => (&scene.geometries[geometry].mesh, &scene.geometries[geometry].wire),
         None => {
-            let mut made = Maker::new(model, options).make(collider.shape, false)?;
-            shape::to_metres(&mut made, &model.frame);
-            points_of(&made.mesh.points, &made.wire)
+            let mut shape = Maker::new(model, options).make(collider.shape, false)?;
+            shape::to_metres(&mut shape, &model.frame);
+            made = shape;
+            (&made.mesh, &made.wire)
         }
     };
+    let points = points_of(&mesh.points, wire);
     let bounds = Bounds::of_points(points.iter().copied());
     let flat = || RealizeError::FlatCollider { collider: index };
     if bounds.is_empty() || (bounds.max - bounds.min).min_element() <= EQUAL * bounds.diagonal() {
@@ -118,11 +137,32 @@ fn body(
                 .map_err(|fault| RealizeError::Solid { shape: collider.shape, part: None, fault })?;
             (Body::Hull { points, triangles }, DAffine3::IDENTITY)
         }
+        Fit::Parts => {
+            return parts(collider, mesh, wire, bounds.diagonal())
+                .map_err(|fault| RealizeError::ColliderParts { collider: index, fault });
+        }
     };
-    Ok((placed, false))
+    Ok(one(placed, false))
 }
 
-fn points_of(points: &[DVec3], wire: &crate::geometry::mesh::Wire) -> Vec<DVec3> {
+/// Convex parts of a mesh in metres.
+fn parts(collider: &model::Collider, mesh: &Mesh, wire: &Wire, size: f64) -> Result<Made, SolidFault> {
+    if !wire.is_empty() {
+        return Err(SolidFault::Lines { part: 0 });
+    }
+    let concavity = collider.concavity * size;
+    let (most, vertices) = (collider.parts as usize, collider.vertices as usize);
+    let found = decompose(mesh, &Decomposing { most, concavity, vertices })?;
+    let concavities = found.iter().map(|part| part.concavity).collect();
+    let body = |part: ConvexPart| Body::Hull { points: part.points, triangles: part.triangles };
+    Ok(Made {
+        bodies: found.into_iter().map(|part| (body(part), DAffine3::IDENTITY)).collect(),
+        exact: false,
+        concavities: Some((concavities, concavity)),
+    })
+}
+
+fn points_of(points: &[DVec3], wire: &Wire) -> Vec<DVec3> {
     points.iter().copied().chain(wire.points.iter().map(|point| point.position)).collect()
 }
 

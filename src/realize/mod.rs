@@ -185,6 +185,14 @@ pub enum RealizeError {
         /// Index of the collider.
         collider: usize,
     },
+    /// A collider of parts whose shape cannot be cut.
+    #[error("{fault}")]
+    ColliderParts {
+        /// Index of the collider.
+        collider: usize,
+        /// Why.
+        fault: SolidFault,
+    },
     /// A color by a formula that has no value somewhere.
     #[error("its color has no value at {}", told(*place))]
     NoColor {

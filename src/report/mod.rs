@@ -19,7 +19,7 @@ mod quadrics;
 mod surfaces;
 
 pub use assertion::{Check, Fault};
-pub use colliders::ColliderFacts;
+pub use colliders::{ColliderFacts, PartsFacts};
 pub use deviation::{deviation_maps, measure_deviation};
 pub use heights::HeightFacts;
 pub use joints::JointFacts;
@@ -316,11 +316,11 @@ pub fn measure(
         },
         totals: totals(&file, &facts, written, &nodes),
         lods: levels::levels(&file, written, &facts),
+        colliders: colliders::colliders(&file, written, &facts),
         shapes: facts,
         nodes,
         skins,
         clips,
-        colliders: colliders::colliders(&file, written),
         paths: joints::joints(model),
         quadrics: quadrics::quadrics(model),
         heights: heights::heights(&file, written, model, shapes)?,

@@ -24,6 +24,19 @@ pub struct Collider {
     pub rotation: DQuat,
     /// Whether it is the shape itself and no body around it.
     pub exact: bool,
+    /// What it is a part of, if it stands for a part of its shape alone.
+    pub part: Option<ColliderPart>,
+}
+
+/// What a body is a part of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColliderPart {
+    /// Name of the whole, which no body has.
+    pub of: String,
+    /// How far from convex that is what it stands for, metres.
+    pub concavity: f64,
+    /// How far that was to be, metres.
+    pub allowed: f64,
 }
 
 /// A body about the origin, metres.

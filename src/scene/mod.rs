@@ -9,7 +9,7 @@ mod morph;
 mod motion;
 
 pub use check::{Checked, SceneError};
-pub use collider::{Body, Collider, ColliderForm};
+pub use collider::{Body, Collider, ColliderForm, ColliderPart};
 pub use morph::MorphTarget;
 pub use motion::{Animation, Channel, Skin};
 

@@ -231,3 +231,56 @@ fn round_bodies_as_meshes_are_closed_and_outward() {
         assert_near(compiled.report.as_ref().expect("a report").colliders["c"].volume, volume, 1e-5);
     }
 }
+
+/// An angle of two boxes, as a drawing pushed out.
+const ANGLE: &str = "[shape.angle.extrude]\nheight = 0.5\nprofile = { polyline = { points = [[0, 0], [2, 0], [2, 0.5], [0.5, 0.5], [0.5, 2], [0, 2]], closed = true } }\n[collider.body]\nshape = \"angle\"\nfit = \"parts\"\n";
+
+#[test]
+fn convex_parts_cover_a_shape_in_every_form() {
+    let (glb, compiled) = bake(ANGLE);
+    let facts = compiled.report.as_ref().expect("a report").colliders["body"].clone();
+    let parts = facts.parts.expect("parts");
+    assert_eq!((facts.body, parts.parts, facts.vertices), ("parts", 2, Some(16)));
+    // Two boxes put together are those boxes.
+    assert_near(facts.volume, 0.5 * (1.0 + 0.75), 1e-6);
+    assert_near(parts.volume_ratio.expect("it is closed"), 1.0, 1e-6);
+    // Within a twentieth of what is allowed, which is 0.03 of the diagonal of 2.87.
+    assert!(parts.beyond.expect("it is closed") < 4.4e-3 && facts.outside.expect("shown") < 1e-6);
+    assert!(parts.concavity < 1e-6, "{parts:?}");
+    let list = glb.list("nodes")[0]["extras"]["colliders"].as_array().expect("a list").clone();
+    let said: Vec<_> = list.iter().map(|told| (&told["name"], &told["shape"], &told["part-of"])).collect();
+    let [hull, body] = [json!("hull"), json!("body")];
+    assert_eq!(said, [(&json!("body-00"), &hull, &body), (&json!("body-01"), &hull, &body)]);
+    let names = |form: &str| -> Vec<String> {
+        let (glb, _) = bake(&format!("[output]\ncolliders = \"{form}\"\n{ANGLE}"));
+        glb.list("nodes")[1..].iter().map(|node| node["name"].as_str().expect("a name").to_owned()).collect()
+    };
+    assert_eq!(names("godot"), ["body-00-convcolonly", "body-01-convcolonly"]);
+    assert_eq!(names("unreal"), ["UCX_angle_00", "UCX_angle_01"]);
+    assert_eq!(names("omi"), ["body-00", "body-01"]);
+}
+
+#[test]
+fn more_parts_fill_less_of_a_hollow() {
+    let ring = |rest: &str| {
+        let text = format!(
+            "tolerance = 0.005\n[shape.a.torus]\nradius = 0.5\ntube-radius = 0.1\n[collider.c]\nshape = \"a\"\nfit = \"parts\"\n{rest}"
+        );
+        let (_, compiled) = bake(&text);
+        let codes: Vec<_> = compiled.warnings.iter().map(|warning| warning.code.text()).collect();
+        (compiled.report.as_ref().expect("a report").colliders["c"].clone(), codes)
+    };
+    let (fine, told) = ring("concavity = 0.05");
+    let parts = fine.parts.expect("parts");
+    assert!(told.is_empty() && (3..=16).contains(&parts.parts), "{told:?} {parts:?}");
+    // The diagonal of the box is 1.71.
+    assert!(parts.concavity <= 0.05 * 1.71 && fine.outside.expect("shown") <= 1e-6, "{fine:?}");
+    let (coarse, told) = ring("concavity = 0.05\nparts = 2");
+    let rough = coarse.parts.expect("parts");
+    assert_eq!((told, rough.parts), (vec!["K1054"], 2));
+    assert!(rough.volume_ratio > parts.volume_ratio && rough.beyond > parts.beyond, "{rough:?} {parts:?}");
+    assert!(coarse.outside.expect("shown") <= 1e-6);
+    let (few, _) = ring("concavity = 0.05\nvertices = 12");
+    assert!(few.vertices.expect("hulls") <= 12 * few.parts.expect("parts").parts, "{few:?}");
+    assert!(few.outside.expect("shown") <= 1e-6 && few.volume > fine.volume);
+}

@@ -72,9 +72,42 @@ impl Sheet {
         nearest_of_triangle(corners, point).distance_squared(point)
     }
 
+    /// Whether a point lies inside of this surface, which is to be closed: a ray from it leaves more often than it enters.
+    #[must_use]
+    pub fn contains(&self, point: DVec3) -> bool {
+        /// Directions of no symmetry; the next is tried where a ray meets an edge.
+        const RAYS: [[f64; 3]; 4] =
+            [[0.36, 0.48, 0.81], [-0.71, 0.23, 0.67], [0.19, -0.88, 0.43], [0.53, 0.61, -0.59]];
+        let bounds = self.tree.bounds();
+        let reach = 2.0 * (bounds.diagonal() + point.distance(bounds.center()));
+        let crossings = |ray: DVec3| {
+            let (mut count, mut clear) = (0_u32, true);
+            self.tree.visit_along(point, point + ray, |triangle| {
+                if let Some(inside) = met(self.corners(self.triangles[triangle as usize]), point, ray) {
+                    (count, clear) = (count + 1, inside);
+                }
+                clear
+            });
+            clear.then_some(count)
+        };
+        RAYS.iter()
+            .find_map(|ray| crossings(DVec3::from_array(*ray) * reach))
+            .is_some_and(|count| count % 2 == 1)
+    }
+
     /// The greatest distance of this surface from another, within `accuracy`.
     #[must_use]
     pub fn farthest_from(&self, other: &Self, accuracy: f64) -> Farthest {
+        self.farthest(other, accuracy, |_| true)
+    }
+
+    /// The greatest distance of this surface from a closed one where it lies outside of that, within `accuracy`.
+    #[must_use]
+    pub fn farthest_outside(&self, body: &Self, accuracy: f64) -> Farthest {
+        self.farthest(body, accuracy, |place| !body.contains(place))
+    }
+
+    fn farthest(&self, other: &Self, accuracy: f64, counts: impl Fn(DVec3) -> bool + Sync) -> Farthest {
         let common: BTreeSet<[[u64; 3]; 3]> =
             other.triangles.iter().map(|triangle| name(other.corners(*triangle))).collect();
         let own: Vec<[u32; 3]> = self
@@ -91,10 +124,10 @@ impl Sheet {
         let known: Vec<(f64, u32)> =
             used.par_iter().map(|corner| other.nearest(self.points[*corner as usize])).collect();
         // What all triangles begin with is the same for any number of threads.
-        let start = used
-            .iter()
-            .zip(&known)
-            .fold(none, |best, (corner, (distance, _))| best.or(*distance, self.points[*corner as usize]));
+        let start = used.iter().zip(&known).fold(none, |best, (corner, (distance, _))| {
+            let place = self.points[*corner as usize];
+            if *distance > best.at_least && counts(place) { best.or(*distance, place) } else { best }
+        });
         let nearest = |corner: u32| used.binary_search(&corner).map_or(0, |place| known[place].1);
         let found = own.into_par_iter().with_min_len(16).map(|triangle| {
             let corners = self.corners(triangle);
@@ -103,7 +136,7 @@ impl Sheet {
             if most <= start.at_least + accuracy {
                 return Farthest { at_most: most, ..start };
             }
-            within(corners, other, (start, accuracy))
+            within(corners, other, (start, accuracy), &counts)
         });
         let found = found.reduce(|| start, Farthest::with);
         Farthest { at_most: found.at_most.max(found.at_least), ..found }
@@ -142,8 +175,33 @@ impl Farthest {
     }
 }
 
-/// The farthest place of a triangle, if it is farther than what is known by more than the accuracy.
-fn within(corners: [DVec3; 3], other: &Sheet, (start, accuracy): (Farthest, f64)) -> Farthest {
+/// Where a ray meets a triangle: whether inside of it, away from its edges; none where it passes by.
+///
+/// Source: T. Möller, B. Trumbore, Fast, minimum storage ray/triangle intersection, 1997.
+fn met([a, b, c]: [DVec3; 3], start: DVec3, ray: DVec3) -> Option<bool> {
+    /// Shares of sides that may be rounding.
+    const EDGE: f64 = 1e-9;
+    let (ab, ac) = (b - a, c - a);
+    let across = ray.cross(ac);
+    let determinant = ab.dot(across);
+    if determinant == 0.0 {
+        return None;
+    }
+    let from = start - a;
+    let over = from.cross(ab);
+    let (u, v) = (from.dot(across) / determinant, ray.dot(over) / determinant);
+    let least = u.min(v).min(1.0 - u - v);
+    (ac.dot(over) / determinant > 0.0 && least >= -EDGE).then_some(least > EDGE)
+}
+
+/// The farthest place of a triangle that counts, if it is farther than what is known by more than the accuracy. Places that do
+/// not count lie on the other side of the surface from those that do.
+fn within(
+    corners: [DVec3; 3],
+    other: &Sheet,
+    (start, accuracy): (Farthest, f64),
+    counts: &impl Fn(DVec3) -> bool,
+) -> Farthest {
     let mut best = start;
     let mut left = vec![corners];
     let mut searches = 0;
@@ -152,8 +210,13 @@ fn within(corners: [DVec3; 3], other: &Sheet, (start, accuracy): (Farthest, f64)
         let reach = [a, b, c].iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
         let (distance, nearest) = other.nearest(middle);
         searches += 1;
-        best = best.or(distance, middle);
-        let most = (distance + reach).min(other.farthest_corner([a, b, c], nearest));
+        let mut most = (distance + reach).min(other.farthest_corner([a, b, c], nearest));
+        if counts(middle) {
+            best = best.or(distance, middle);
+        } else {
+            // The way from here to a place that counts leads through the surface.
+            most = most.min(reach - distance);
+        }
         if most <= best.at_least + accuracy || searches >= MOST {
             best.at_most = best.at_most.max(most);
             continue;
@@ -201,6 +264,35 @@ mod tests {
             assert!(found.at_most - found.at_least <= accuracy, "{found:?}");
             assert!((other.distance(found.place) - found.at_least).abs() < 1e-12);
         }
+    }
+
+    /// A cube of side 2 about the origin, outward.
+    fn cube(middle: DVec3) -> Sheet {
+        let side = |bit: u32, k: u32| if k & bit == 0 { -1.0 } else { 1.0 };
+        let points = (0..8).map(|k| middle + DVec3::new(side(1, k), side(2, k), side(4, k))).collect();
+        let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+        Sheet::new(points, faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect())
+            .unwrap()
+    }
+
+    #[test]
+    fn only_what_lies_outside_counts() {
+        let cube_here = cube(DVec3::ZERO);
+        let mut next = numbers();
+        for _ in 0..500 {
+            let point = DVec3::new(next(), next(), next()) * 4.0 - 2.0;
+            assert_eq!(cube_here.contains(point), point.abs().max_element() < 1.0, "{point}");
+        }
+        // Rays through edges and corners too.
+        assert!(cube_here.contains(DVec3::ZERO) && !cube_here.contains(DVec3::new(0.0, -3.0, 0.0)));
+        // Half of the moved cube is inside, its far side half a side out.
+        let found = cube(DVec3::new(0.5, 0.0, 0.0)).farthest_outside(&cube_here, 1e-3);
+        assert!(found.at_least <= 0.5 + 1e-12 && found.at_most >= 0.5 && found.at_most < 0.502, "{found:?}");
+        let small = cube(DVec3::ZERO);
+        let shrunk =
+            Sheet::new(small.points.iter().map(|point| *point * 0.5).collect(), small.triangles).unwrap();
+        assert_eq!(shrunk.farthest_outside(&cube_here, 1e-3).at_most, 0.0);
+        assert!(shrunk.farthest_from(&cube_here, 1e-3).at_least >= 0.5);
     }
 
     /// The farthest place of a roof lies inside its triangles, where no corner is.

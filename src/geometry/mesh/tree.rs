@@ -39,6 +39,11 @@ impl Tree {
         tree
     }
 
+    /// The box around all triangles.
+    pub(super) fn bounds(&self) -> Bounds {
+        self.nodes[0]
+    }
+
     fn members(&self, leaf: usize) -> &[u32] {
         let count = self.order.len();
         let bound = |leaf: usize| leaf * count / self.leaves;

@@ -12,9 +12,10 @@ use manifold_rust::types::{BooleanEngine, Error, MeshGLP, OpType};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 use super::check::{Check, moments};
+use super::half::{HalfSpace, half_space};
 use super::parts::{Piece, Solids, THIN, classes};
 use super::{Combination, Lying, Raw, SolidFault, Stock};
-use crate::geometry::mesh::index;
+use crate::geometry::mesh::{VertexIndex, index};
 use crate::geometry::number::Bounds;
 
 /// Pieces that one part may have, as ids tell them apart.
@@ -198,6 +199,22 @@ impl Body {
         let quick = self.0.try_convex_erosion(&ball, None, None);
         let quick = quick.or_else(|| self.0.try_erode_by_convex(&ball, None, None));
         taken(quick.unwrap_or_else(|| self.0.minkowski_difference(&ball))).map(Self)
+    }
+
+    /// What lies on the side that the normal of a plane points to, and on the other.
+    pub(super) fn halves(&self, plane: &HalfSpace) -> Result<[Self; 2], SolidFault> {
+        let mesh = half_space(plane, &bounds(&self.0), 0);
+        let corners = |of: &[VertexIndex; 3]| of.map(|corner| mesh.vertices[corner.subscript()].point.0);
+        let triangles = mesh.triangles.iter().map(corners).collect();
+        let piece = Piece { points: mesh.points.clone(), triangles, ..Piece::default() };
+        let half = taken(Manifold::from_mesh_glp(&exchange(&piece, 2, None, 0.0)))?;
+        let side = |operation: OpType| applied(&self.0, &half, operation).map(Self);
+        Ok([side(OpType::Intersect)?, side(OpType::Subtract)?])
+    }
+
+    /// The skins that are apart from each other, hollows too.
+    pub(super) fn components(&self) -> Vec<Self> {
+        self.0.decompose().into_iter().map(Self).collect()
     }
 
     pub(super) fn triangles(&self) -> (Vec<DVec3>, Vec<[u32; 3]>) {

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::half::HalfSpace;
 use super::parts::Solids;
 use super::{Combination, Raw, SolidFault, Stock};
 
@@ -28,6 +29,14 @@ impl Body {
 
     pub(super) fn eroded(&self, _: &[DVec3]) -> Result<Self, SolidFault> {
         Err(SolidFault::Missing)
+    }
+
+    pub(super) fn halves(&self, _: &HalfSpace) -> Result<[Self; 2], SolidFault> {
+        Err(SolidFault::Missing)
+    }
+
+    pub(super) fn components(&self) -> Vec<Self> {
+        Vec::new()
     }
 
     pub(super) fn triangles(&self) -> (Vec<DVec3>, Vec<[u32; 3]>) {

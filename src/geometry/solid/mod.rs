@@ -12,6 +12,7 @@
 
 mod carry;
 mod check;
+mod decompose;
 mod enclose;
 mod group;
 mod half;
@@ -29,6 +30,7 @@ mod engine;
 mod tests;
 
 pub use check::Check;
+pub use decompose::{ConvexPart, Decomposing, MOST_BODIES, decompose};
 pub use enclose::{Round, enclosing_capsule, enclosing_cylinder, enclosing_hull, enclosing_radius};
 pub use half::{HalfSpace, half_space};
 pub use open::cut_open;
@@ -170,6 +172,14 @@ pub enum SolidFault {
         needed: u64,
         /// The most.
         limit: u64,
+    },
+    /// More bodies apart from each other than can be made into parts.
+    #[error("is {bodies} bodies apart from each other, and the limit is {limit}")]
+    Scattered {
+        /// How many.
+        bodies: usize,
+        /// The most.
+        limit: usize,
     },
     /// The library refused.
     #[error("the solid library says {0}")]

@@ -448,6 +448,11 @@ codes! {
     EngineColliders = "K1051";
     /// a name that an engine acts upon
     EngineName = "K1052";
+
+    /// a collider of parts for a shape that is no solid
+    NoParts = "K1053";
+    /// parts of a collider that are less convex than was asked for
+    RoughParts = "K1054";
 }
 
 impl serde::Serialize for Code {

@@ -553,4 +553,10 @@ examples! {
     EngineName: "Godot's importer acts upon the ends of names: a node whose name ends in `-col` gets a body, one in `-noimp` is left out, a motion that begins or ends with `loop` is repeated. In the profile `godot` a name that happens to end so is told.",
         "[output]\nprofiles = [\"godot\"]\n[shape.front-wheel.sphere]\nradius = 1" =>
         "[output]\nprofiles = [\"godot\"]\n[shape.wheel-front.sphere]\nradius = 1";
+    NoParts: "A shape is cut into convex parts as a solid: it must be closed, with faces that look outward, and in no more than 256 bodies.",
+        "[shape.a.revolve]\nprofile = { polyline = { points = [[1, 0], [1, 2]] } }\ncaps = false\n[collider.c]\nshape = \"a\"\nfit = \"parts\"" =>
+        "[shape.a.revolve]\nprofile = { polyline = { points = [[0, 0], [1, 0], [1, 2], [0, 2]] } }\n[collider.c]\nshape = \"a\"\nfit = \"parts\"";
+    RoughParts: "The convex parts are as many as `parts` allows, and some of them fill hollows of the shape more deeply than `concavity` allows. A warning.",
+        "tolerance = 0.02\n[shape.a.torus]\nradius = 1\ntube-radius = 0.2\n[collider.c]\nshape = \"a\"\nfit = \"parts\"\nparts = 2" =>
+        "tolerance = 0.02\n[shape.a.torus]\nradius = 1\ntube-radius = 0.2\n[collider.c]\nshape = \"a\"\nfit = \"parts\"\nparts = 12\nconcavity = 0.1";
 }
