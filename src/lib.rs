@@ -29,6 +29,7 @@
 //! | `realize` | `geometry`, `motion`, `model`, `scene` |
 //! | `optimize` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `packing`, `scene` |
 //! | `gltf` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `packing`, `scene` |
+//! | `repack` | `geometry::number`, `geometry::mesh`, `packing`, `import`, `optimize`, `gltf` |
 //! | `report` | `geometry`, `motion`, `model`, `packing`, `scene`, `realize`, `gltf` |
 //! | `preview` | `geometry::number`, `packing`, `import` |
 //! | `language` | `geometry::number` |
@@ -60,6 +61,7 @@ pub mod packing;
 pub mod preview;
 mod project;
 pub mod realize;
+pub mod repack;
 pub mod report;
 pub mod scene;
 

@@ -9,4 +9,5 @@ mod import_gltf;
 mod language;
 mod laws;
 mod preview;
+mod repack;
 mod surfaces;

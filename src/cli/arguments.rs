@@ -95,6 +95,8 @@ pub(crate) enum Command {
     ///
     /// Exit codes: 0 the same bytes, 1 they differ, 2 wrong usage, 3 they cannot be compared.
     Diff(Diff),
+    /// Make a glTF file of whatever maker small and quick to draw; names, extras and unknown extensions live on
+    Optimize(Optimize),
     /// Print what is in a .glb file
     Inspect(Inspect),
     /// Look after the folder of what was baked before
@@ -410,6 +412,27 @@ pub(crate) struct Inspect {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct Optimize {
+    /// The file, .glb or .gltf with its data in it or beside it
+    pub(crate) file: PathBuf,
+    /// The .glb file that is written
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// For whom it is
+    #[arg(long, value_name = "NAME", default_value = "web", value_parser = profile)]
+    pub(crate) profile: Profile,
+    /// How far a point may move, in units of the scene [default: half of a 16384th of its extent along each axis]
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) tolerance: Option<f64>,
+    /// Version of the compression: 0 for `EXT_meshopt_compression`, 1 for the shorter `KHR_meshopt_compression`
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=1))]
+    pub(crate) codec: u8,
+    /// Write sizes, counts and measured errors as JSON too
+    #[arg(long, value_name = "FILE")]
+    pub(crate) report: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct Gallery {
     #[command(flatten)]
     pub(crate) documents: Documents,
@@ -523,6 +546,11 @@ fn pixels(text: &str) -> Result<(u32, u32), String> {
         }
     };
     Ok((number(width)?, number(height)?))
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    let length: f64 = text.trim().parse().map_err(|_| format!("`{text}` is not a length"))?;
+    if length.is_finite() && length > 0.0 { Ok(length) } else { Err("write a length above 0".to_owned()) }
 }
 
 fn background(text: &str) -> Result<[u8; 4], String> {

@@ -15,6 +15,7 @@ mod gallery;
 mod html;
 mod inspect;
 mod lsp;
+mod optimize;
 mod output;
 mod plan;
 mod project;
@@ -87,6 +88,7 @@ pub fn run() -> ExitCode {
         Command::Diff(diff) => diff::run(&diff, &printer),
         Command::Gallery(mut gallery) => gallery::run(&mut gallery, &printer),
         Command::Lsp => lsp::run(&printer),
+        Command::Optimize(optimize) => optimize::run(&optimize, &printer),
         Command::Inspect(inspect) => inspect::run(&inspect, &printer),
         Command::Cache(command) => cache::run(&command, &printer),
         Command::Completions(completions) => describe::completions(&completions),

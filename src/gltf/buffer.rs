@@ -8,7 +8,7 @@ use serde_json::{Map, json};
 
 use super::duplicate::{Views, share};
 use crate::geometry::mesh;
-use crate::packing::{EXTENSION, encode_attributes, encode_sequence, encode_triangles};
+use crate::packing::{Codec, EXTENSION, encode_attributes, encode_sequence, encode_triangles};
 
 /// The binary chunk in the making.
 pub(super) struct Binary {
@@ -163,10 +163,14 @@ fn packed(bytes: &[u8], content: Content) -> Option<(Vec<u8>, Map<String, Value>
     };
     let (made, stride, mode, filter) = match content {
         Content::Picture => return None,
-        Content::Attributes { stride } => (encode_attributes(bytes, stride)?, stride, "ATTRIBUTES", None),
-        Content::Directions => (encode_attributes(bytes, 4)?, 4, "ATTRIBUTES", Some("OCTAHEDRAL")),
+        Content::Attributes { stride } => {
+            (encode_attributes(bytes, stride, Codec::Zero)?, stride, "ATTRIBUTES", None)
+        }
+        Content::Directions => {
+            (encode_attributes(bytes, 4, Codec::Zero)?, 4, "ATTRIBUTES", Some("OCTAHEDRAL"))
+        }
         Content::Exponential { stride } => {
-            (encode_attributes(bytes, stride)?, stride, "ATTRIBUTES", Some("EXPONENTIAL"))
+            (encode_attributes(bytes, stride, Codec::Zero)?, stride, "ATTRIBUTES", Some("EXPONENTIAL"))
         }
         Content::Triangles { width, vertices } => {
             (encode_triangles(&indices(width), vertices)?, width, "TRIANGLES", None)

@@ -28,4 +28,6 @@ pub use profile::Profile;
 pub use read::{Geometry, Indices, Lines, Part, PositionBytes, Read, ReadError, read};
 pub use read_morph::ReadTarget;
 pub use read_motion::{ReadAnimation, ReadChannel, ReadInfluences, ReadSkin};
-pub use write::{WriteError, Written, WrittenAnimation, WrittenGeometry, WrittenLevel, WrittenTarget, write};
+pub use write::{
+    WriteError, Written, WrittenAnimation, WrittenGeometry, WrittenLevel, WrittenTarget, container, write,
+};

@@ -395,27 +395,36 @@ impl Writer {
         self.binary.start();
         self.binary.buffers(&mut self.root);
         let binary = self.binary.bytes;
-        let mut json =
+        let json =
             serde_json::to_vec(&self.root).expect("a glTF document has no map with other keys than text");
-        json.resize(json.len().next_multiple_of(4), b' ');
-        let length = 12 + 8 + json.len() as u64 + 8 + binary.len() as u64;
-        if length > u64::from(u32::MAX) {
-            return Err(WriteError::TooLarge(length));
-        }
-        let word = |value: usize| u32::try_from(value).unwrap_or(u32::MAX).to_le_bytes();
-        let mut head = Vec::with_capacity(json.len() + 28);
-        head.extend_from_slice(b"glTF");
-        head.extend_from_slice(&word(2));
-        head.extend_from_slice(&word(size(length)));
-        head.extend_from_slice(&word(json.len()));
-        head.extend_from_slice(b"JSON");
-        head.extend_from_slice(&json);
-        head.extend_from_slice(&word(binary.len()));
-        head.extend_from_slice(b"BIN\0");
-        let mut bytes = binary;
-        bytes.splice(0..0, head);
-        Ok(bytes)
+        container(json, binary)
     }
+}
+
+/// The bytes of a `.glb` file of its two chunks; the second is whole words. It is moved, not copied, where its memory has
+/// room for the first before it.
+///
+/// # Errors
+/// When the file would pass 4 GiB.
+pub fn container(mut json: Vec<u8>, binary: Vec<u8>) -> Result<Vec<u8>, WriteError> {
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let length = 12 + 8 + json.len() as u64 + 8 + binary.len() as u64;
+    if length > u64::from(u32::MAX) {
+        return Err(WriteError::TooLarge(length));
+    }
+    let word = |value: usize| u32::try_from(value).unwrap_or(u32::MAX).to_le_bytes();
+    let mut head = Vec::with_capacity(json.len() + 28);
+    head.extend_from_slice(b"glTF");
+    head.extend_from_slice(&word(2));
+    head.extend_from_slice(&word(size(length)));
+    head.extend_from_slice(&word(json.len()));
+    head.extend_from_slice(b"JSON");
+    head.extend_from_slice(&json);
+    head.extend_from_slice(&word(binary.len()));
+    head.extend_from_slice(b"BIN\0");
+    let mut bytes = binary;
+    bytes.splice(0..0, head);
+    Ok(bytes)
 }
 
 /// One accessor to all elements of several that follow each other in their view.

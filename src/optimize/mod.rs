@@ -11,7 +11,7 @@ use crate::scene::Scene;
 
 pub use decimate::decimated;
 pub use grid::{GRID_SHARE, MOST_GRID_SHARE, TooCoarse, grid_share};
-pub use order::Order;
+pub use order::{Order, Place, order_triangles};
 
 /// What positions are rounded to; a grid with the share of the tolerance that it may take.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,7 @@
-//! Bytes of vertices and indices, shorter and back: the formats of `EXT_meshopt_compression`.
+//! Bytes of vertices and indices, shorter and back: the formats of `EXT_meshopt_compression` and of its successor.
 //!
-//! Source: Khronos Group, glTF extension `EXT_meshopt_compression`, 2021, appendix A (bitstreams, version 0).
+//! Source: Khronos Group, glTF extension `EXT_meshopt_compression`, 2021, appendix A (bitstreams, version 0);
+//! `KHR_meshopt_compression`, release candidate of 2025 (version 1 of vertices; indices are the same).
 
 use super::whole_triangles;
 
@@ -31,17 +32,42 @@ macro_rules! by_stride {
     };
 }
 
+/// How bytes of vertices are written, and so which extension reads them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Codec {
+    /// Version 0, of `EXT_meshopt_compression`.
+    #[default]
+    Zero,
+    /// Version 1, of `KHR_meshopt_compression`: shorter.
+    One,
+}
+
+impl Codec {
+    /// The extension that reads it.
+    #[must_use]
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Zero => "EXT_meshopt_compression",
+            Self::One => "KHR_meshopt_compression",
+        }
+    }
+}
+
 /// Attributes of `stride` bytes a vertex; `None` where the stride is no multiple of 4 up to 256, or the bytes are not
 /// whole vertices. Linear.
 #[must_use]
-pub fn encode_attributes(bytes: &[u8], stride: usize) -> Option<Vec<u8>> {
-    fn encode<const N: usize>(bytes: &[u8]) -> Option<Vec<u8>> {
+pub fn encode_attributes(bytes: &[u8], stride: usize, codec: Codec) -> Option<Vec<u8>> {
+    fn encode<const N: usize>(bytes: &[u8], version: i32) -> Option<Vec<u8>> {
         let (rows, rest) = bytes.as_chunks::<N>();
-        // Version 0 is the one that the extension has; the level does not count in it.
-        let made = rest.is_empty().then(|| meshopt::encode_vertex_buffer_level(rows, 2, Some(0)));
+        // The level counts in version 1 alone.
+        let made = rest.is_empty().then(|| meshopt::encode_vertex_buffer_level(rows, 2, Some(version)));
         made?.ok().filter(|made| !made.is_empty())
     }
-    by_stride!(stride, encode(bytes))
+    let version = match codec {
+        Codec::Zero => 0,
+        Codec::One => 1,
+    };
+    by_stride!(stride, encode(bytes, version))
 }
 
 /// The bytes that [`encode_attributes`] was given; `None` where they are broken.
@@ -95,7 +121,7 @@ fn plausible(encoded: &[u8], decoded: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::{
-        decode_attributes, decode_sequence, decode_triangles, encode_attributes, encode_sequence,
+        Codec, decode_attributes, decode_sequence, decode_triangles, encode_attributes, encode_sequence,
         encode_triangles,
     };
 
@@ -109,15 +135,19 @@ mod tests {
         for stride in (4..=256).step_by(4) {
             for count in [1, 15, 16, 17, 255, 256, 257, 1000] {
                 let given = bytes(count * stride);
-                let encoded = encode_attributes(&given, stride).expect("the stride is one of the format");
-                assert_eq!(encoded[0], 0xA0, "version 0");
-                assert_eq!(decode_attributes(&encoded, count, stride), Some(given), "{count} of {stride}");
+                for (codec, first) in [(Codec::Zero, 0xA0), (Codec::One, 0xA1)] {
+                    let encoded =
+                        encode_attributes(&given, stride, codec).expect("the stride is one of the format");
+                    assert_eq!(encoded[0], first, "the version");
+                    let back = decode_attributes(&encoded, count, stride);
+                    assert_eq!(back.as_ref(), Some(&given), "{count} of {stride}");
+                }
             }
         }
         for stride in [0, 2, 3, 6, 260] {
-            assert_eq!(encode_attributes(&bytes(stride * 4), stride), None);
+            assert_eq!(encode_attributes(&bytes(stride * 4), stride, Codec::Zero), None);
         }
-        assert_eq!(encode_attributes(&bytes(7), 4), None, "half a vertex");
+        assert_eq!(encode_attributes(&bytes(7), 4, Codec::Zero), None, "half a vertex");
     }
 
     #[test]
@@ -139,7 +169,7 @@ mod tests {
     #[test]
     fn broken_bytes_are_refused_or_read_as_others_and_never_crash() {
         let given = bytes(300 * 8);
-        let encoded = encode_attributes(&given, 8).expect("the stride is one of the format");
+        let encoded = encode_attributes(&given, 8, Codec::Zero).expect("the stride is one of the format");
         for cut in 0..encoded.len() {
             assert_eq!(decode_attributes(&encoded[..cut], 300, 8), None, "cut off at {cut}");
         }

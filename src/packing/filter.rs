@@ -80,6 +80,48 @@ pub fn exponential(numbers: &[f64]) -> Vec<u32> {
     numbers.iter().map(word).collect()
 }
 
+/// A number as a multiple of a power of two, `2^exponent`: what the filter EXPONENTIAL reads back as a float. The nearest of the
+/// multiples below 2^23.
+#[must_use]
+pub fn exponential_step(number: f64, exponent: i8) -> u32 {
+    let most = f64::from((1 << 23) - 1);
+    #[expect(clippy::cast_possible_truncation, reason = "clamped to 24 bits")]
+    let steps = (number / power_of_two(exponent)).round().clamp(-most, most) as i32;
+    let [low, middle, third, _] = steps.to_le_bytes();
+    u32::from_le_bytes([low, middle, third, exponent.cast_unsigned()])
+}
+
+/// `2^exponent`, exactly.
+#[must_use]
+pub fn power_of_two(exponent: i8) -> f64 {
+    // The bits of a float hold its exponent, counted from 1023, above 52 others.
+    let counted = u64::from((i16::from(exponent) + 1023).cast_unsigned());
+    f64::from_bits(counted << 52)
+}
+
+/// A unit quaternion as its three smallest components in `bits` bits each, at least 4 and at most 16, and which is the
+/// greatest: what the filter QUATERNION reads back as four normalized words.
+#[must_use]
+pub fn quaternion(parts: [f64; 4], bits: u8) -> [i16; 4] {
+    let length = parts.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let unit = if length > 0.0 { parts.map(|part| part / length) } else { [0.0, 0.0, 0.0, 1.0] };
+    let greatest = (0..4).fold(0, |most, at| if unit[at].abs() > unit[most].abs() { at } else { most });
+    // Of the two quaternions of a turn, the one whose greatest component is not negative.
+    let sign = if unit[greatest] < 0.0 { -1.0 } else { 1.0 };
+    let most = (1_i16 << (bits - 1)).wrapping_sub(1);
+    let part = |step: usize| {
+        let scaled = unit[(greatest + step) % 4] * sign * std::f64::consts::SQRT_2 * f64::from(most);
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "no part but the greatest is above the root of 1/2"
+        )]
+        let word = scaled.round().clamp(-f64::from(most), f64::from(most)) as i16;
+        word
+    };
+    let which = i16::try_from(greatest).unwrap_or_default();
+    [part(1), part(2), part(3), (most & !3) | which]
+}
+
 /// What a filter makes of decoded bytes, in place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filter {
@@ -89,6 +131,8 @@ pub enum Filter {
     Quaternion,
     /// Floats, any number of them.
     Exponential,
+    /// Colors of 4 or 8 bytes, as lightness and two differences; of `KHR_meshopt_compression` alone.
+    Color,
 }
 
 impl Filter {
@@ -99,6 +143,7 @@ impl Filter {
             "OCTAHEDRAL" => Some(Self::Octahedral),
             "QUATERNION" => Some(Self::Quaternion),
             "EXPONENTIAL" => Some(Self::Exponential),
+            "COLOR" => Some(Self::Color),
             _ => None,
         }
     }
@@ -115,6 +160,15 @@ impl Filter {
             ),
             (Self::Octahedral, 8) => in_rows(bytes, shorts, meshopt::decode_filter_oct, bytes_of),
             (Self::Quaternion, 8) => in_rows(bytes, shorts, meshopt::decode_filter_quat, bytes_of),
+            (Self::Color, 4) => {
+                in_rows::<4, [u8; 4]>(bytes, |row| row, meshopt::decode_filter_color, |row| row)
+            }
+            (Self::Color, 8) => in_rows::<8, [u16; 4]>(
+                bytes,
+                |row| shorts(row).map(i16::cast_unsigned),
+                meshopt::decode_filter_color,
+                |row| bytes_of(row.map(u16::cast_signed)),
+            ),
             (Self::Exponential, stride) if stride % 4 == 0 => in_rows::<4, [u32; 1]>(
                 bytes,
                 |row| [u32::from_le_bytes(row)],
@@ -153,7 +207,46 @@ fn in_rows<const N: usize, T>(
 mod tests {
     use glam::DVec3;
 
-    use super::{Filter, exponential, octahedral};
+    use super::{Filter, exponential, exponential_step, octahedral, power_of_two, quaternion, shorts};
+
+    #[test]
+    fn quaternions_come_back_as_the_same_turn() {
+        for bits in [12_u8, 16] {
+            let step = power_of_two(1 - bits.cast_signed());
+            for at in 0..2000_i32 {
+                let part = |k: i32| f64::from((at * 7919 + k * 104_729) % 2003 - 1001);
+                let given = glam::DVec4::new(part(1), part(2), part(3), part(4)).normalize();
+                let words = quaternion(given.to_array(), bits);
+                let mut bytes = super::bytes_of(words);
+                assert!(Filter::Quaternion.undo(&mut bytes, 8));
+                let found = glam::DVec4::from_array(shorts(bytes).map(|word| f64::from(word) / 32767.0));
+                let apart = (found - given).length().min((found + given).length());
+                // Half a step of each of three parts, what the greatest makes good of it, and the words' own rounding.
+                assert!(apart < 2.0 * step + 1e-4, "{given} became {found}, {apart} away in {bits} bits");
+            }
+        }
+        assert_eq!(
+            quaternion([0.0; 4], 16),
+            quaternion([0.0, 0.0, 0.0, 1.0], 16),
+            "no turn is the turn of nothing"
+        );
+    }
+
+    #[test]
+    fn multiples_of_a_power_of_two_come_back_within_half_of_it() {
+        for exponent in [-20_i8, -12, 0, 3] {
+            for at in -50..=50 {
+                let given = f64::from(at) * 0.37;
+                let mut bytes = exponential_step(given, exponent).to_le_bytes();
+                assert!(Filter::Exponential.undo(&mut bytes, 4));
+                let found = f64::from(f32::from_le_bytes(bytes));
+                let step = power_of_two(exponent);
+                // The mantissa has 23 bits beside its sign.
+                let bound = (step / 2.0).max(given.abs() - step * 8_388_607.0);
+                assert!((given - found).abs() <= bound, "{given} became {found} of {step}");
+            }
+        }
+    }
 
     #[test]
     fn unit_vectors_come_back_within_a_degree() {

@@ -15,14 +15,16 @@ mod tangent;
 mod unpack;
 
 pub use codec::{
-    decode_attributes, decode_sequence, decode_triangles, encode_attributes, encode_sequence,
+    Codec, decode_attributes, decode_sequence, decode_triangles, encode_attributes, encode_sequence,
     encode_triangles,
 };
-pub use filter::{Filter, exponential, octahedral, share_byte, signed_byte};
+pub use filter::{
+    Filter, exponential, exponential_step, octahedral, power_of_two, quaternion, share_byte, signed_byte,
+};
 pub use order::{order_for_cache, order_for_strips};
 pub use simplify::{Attributes, simplified};
 pub use tangent::corner_tangents;
-pub use unpack::{EXTENSION, UnpackError, stored_lengths, unpacked};
+pub use unpack::{EXTENSION, EXTENSIONS, MOST_RATIO, UnpackError, decoded, stored_lengths, unpacked};
 
 /// Whether all indices are below a count, and make whole triangles.
 fn whole_triangles(indices: &[u32], vertices: usize) -> bool {

@@ -5,14 +5,17 @@ use std::borrow::Cow;
 use serde_json::{Map, Value, json};
 use thiserror::Error;
 
-use super::codec::{decode_attributes, decode_sequence, decode_triangles};
+use super::codec::{Codec, decode_attributes, decode_sequence, decode_triangles};
 use super::filter::Filter;
 
-/// The extension that is read.
-pub const EXTENSION: &str = "EXT_meshopt_compression";
+/// The extension that a bake writes.
+pub const EXTENSION: &str = Codec::Zero.extension();
 
-/// Plain bytes for each byte of a file.
-const MOST_RATIO: usize = 128;
+/// The extensions that are read.
+pub const EXTENSIONS: [&str; 2] = [EXTENSION, Codec::One.extension()];
+
+/// Plain bytes for each byte of a file, at most.
+pub const MOST_RATIO: usize = 128;
 
 /// Why a file cannot be unpacked.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -37,8 +40,8 @@ pub enum UnpackError {
 /// When the file is broken.
 pub fn unpacked(bytes: &[u8]) -> Result<Cow<'_, [u8]>, UnpackError> {
     let file = container(bytes)?;
-    let name = EXTENSION.as_bytes();
-    if !file.json.windows(name.len()).any(|part| part == name) {
+    let named = |name: &str| file.json.windows(name.len()).any(|part| part == name.as_bytes());
+    if !EXTENSIONS.into_iter().any(named) {
         return Ok(Cow::Borrowed(bytes));
     }
     let mut root = root(&file)?;
@@ -56,7 +59,7 @@ pub fn unpacked(bytes: &[u8]) -> Result<Cow<'_, [u8]>, UnpackError> {
     }
     for list in ["extensionsUsed", "extensionsRequired"] {
         let left = root.get_mut(list).and_then(Value::as_array_mut).map(|names| {
-            names.retain(|name| name != EXTENSION);
+            names.retain(|name| !EXTENSIONS.into_iter().any(|packs| name == packs));
             names.len()
         });
         if left == Some(0) {
@@ -82,7 +85,8 @@ pub fn unpacked(bytes: &[u8]) -> Result<Cow<'_, [u8]>, UnpackError> {
 pub fn stored_lengths(bytes: &[u8]) -> Result<Vec<u64>, UnpackError> {
     let root = root(&container(bytes)?)?;
     let length = |(index, view): (usize, &Value)| {
-        let packed = view.get("extensions").and_then(|all| all.get(EXTENSION));
+        let own = view.get("extensions");
+        let packed = own.and_then(|all| EXTENSIONS.into_iter().find_map(|name| all.get(name)));
         let length = packed.unwrap_or(view).get("byteLength").and_then(Value::as_u64);
         length.ok_or(UnpackError::View(index, "it has no length"))
     };
@@ -103,8 +107,8 @@ fn root(file: &gltf::Glb<'_>) -> Result<Map<String, Value>, UnpackError> {
 
 /// Appends the plain bytes of a view and makes the view one of them.
 fn unpack(view: &mut Map<String, Value>, binary: &[u8], plain: &mut Vec<u8>) -> Result<(), &'static str> {
-    let packed =
-        view.get_mut("extensions").and_then(Value::as_object_mut).and_then(|own| own.remove(EXTENSION));
+    let own = view.get_mut("extensions").and_then(Value::as_object_mut);
+    let packed = own.and_then(|own| EXTENSIONS.into_iter().find_map(|name| own.remove(name)));
     if view.get("extensions").and_then(Value::as_object).is_some_and(Map::is_empty) {
         view.remove("extensions");
     }
@@ -136,7 +140,12 @@ fn part<'a>(of: &Map<String, Value>, binary: &'a [u8]) -> Result<&'a [u8], &'sta
     end.and_then(|end| binary.get(start..end)).ok_or("it reaches past the end of the data")
 }
 
-fn decoded(packed: &Map<String, Value>, encoded: &[u8]) -> Result<Vec<u8>, &'static str> {
+/// The plain bytes of a view, of what its extension says of them and its compressed bytes. Linear in the result, which is
+/// hardly more than 128 times as long.
+///
+/// # Errors
+/// What is wrong with them.
+pub fn decoded(packed: &Map<String, Value>, encoded: &[u8]) -> Result<Vec<u8>, &'static str> {
     let text = |name: &str| packed.get(name).and_then(Value::as_str);
     let count = number(packed, "count").ok_or("it has no count")?;
     let stride = number(packed, "byteStride").ok_or("it has no stride")?;

@@ -205,7 +205,8 @@ fn what_claims_more_than_its_bytes_can_hold_is_refused_before_memory_is_taken() 
 #[test]
 fn views_that_share_their_bytes_cannot_ask_for_any_amount() {
     let zeros = vec![0_u8; 8 * 4096];
-    let packed = kiln::packing::encode_attributes(&zeros, 8).expect("the stride is one of the format");
+    let packed = kiln::packing::encode_attributes(&zeros, 8, kiln::packing::Codec::Zero)
+        .expect("the stride is one of the format");
     let view = format!(
         r#"{{"buffer":1,"byteLength":32768,"extensions":{{"EXT_meshopt_compression":{{"buffer":0,"byteLength":{},"byteStride":8,"count":4096,"mode":"ATTRIBUTES"}}}}}}"#,
         packed.len()

@@ -120,7 +120,8 @@ impl<'a> Data<'a> {
 /// Elements of an accessor that has no bytes of its own.
 const MOST: usize = 1 << 26;
 
-fn size(kind: DataType) -> usize {
+/// Bytes of a component.
+pub(crate) fn size(kind: DataType) -> usize {
     match kind {
         DataType::I8 | DataType::U8 => 1,
         DataType::I16 | DataType::U16 => 2,
@@ -128,14 +129,14 @@ fn size(kind: DataType) -> usize {
     }
 }
 
-fn little(bytes: &[u8]) -> u32 {
+pub(crate) fn little(bytes: &[u8]) -> u32 {
     let mut word = [0; 4];
     word[..bytes.len()].copy_from_slice(bytes);
     u32::from_le_bytes(word)
 }
 
 /// A component as a number (glTF 2.0 Specification, 2021, section 3.11: how normalized ones are read).
-fn number(kind: DataType, normalized: bool, bytes: &[u8]) -> f32 {
+pub(crate) fn number(kind: DataType, normalized: bool, bytes: &[u8]) -> f32 {
     let whole = little(bytes);
     let (value, most) = match kind {
         DataType::F32 => return f32::from_bits(whole),

@@ -19,7 +19,7 @@ use glam::{DMat4, DQuat, DVec3};
 use gltf::json::validation::Validate as _;
 use thiserror::Error;
 
-pub(crate) use accessor::Data;
+pub(crate) use accessor::{Data, little, number, size};
 pub use clip::{Channel, ChannelPath, Clip, Steps, Track};
 pub use geometry::{Weighted, read, read_weighted};
 pub(crate) use mesh::read as mesh;
@@ -242,7 +242,7 @@ impl GltfFile {
 }
 
 /// The bytes of a buffer that stand in the document or in another file.
-fn buffer_of(
+pub(crate) fn buffer_of(
     index: usize,
     uri: &str,
     open: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
