@@ -3,6 +3,7 @@
 use std::fmt;
 
 use glam::DVec3;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelExtend, ParallelIterator};
 
 use super::Surface;
 use super::rim::{Line, Rim};
@@ -116,15 +117,15 @@ const SAME: f64 = 1e-9;
 ///
 /// Cost: sorting the sides, and about 32 evaluations for each piece of each joint.
 #[must_use]
-pub fn joints<S: Surface>(surfaces: &[S]) -> SurfaceJoints {
+pub fn joints<S: Surface + Sync>(surfaces: &[S]) -> SurfaceJoints {
     let mut found = SurfaceJoints::default();
-    for (index, surface) in surfaces.iter().enumerate() {
-        inner_joints(index, surface, &mut found.joints);
-    }
+    let inner = |(index, surface)| inner_joints(index, surface);
+    found.joints = surfaces.par_iter().enumerate().flat_map_iter(inner).collect();
     let sides = sides(surfaces);
     let ends = sides.iter().flat_map(|side| side.probes);
     let near = SAME * Bounds::of_points(ends).diagonal();
     let mut met = vec![false; sides.len()];
+    let mut meetings = Vec::new();
     for (one, side) in sides.iter().enumerate() {
         if side.is_point(near) {
             found.collapsed.push((side.surface, side.rim));
@@ -135,14 +136,18 @@ pub fn joints<S: Surface>(surfaces: &[S]) -> SurfaceJoints {
         let reach = sides[one + 1..].iter().take_while(|other| other.key.x <= side.key.x + near);
         for (offset, other) in reach.enumerate() {
             let Some(meeting) = side.meets(surfaces, other, near) else { continue };
-            let (a, b) = (side.line(surfaces), other.line(surfaces));
-            let lines =
-                [(side.surface, SurfaceLine::Rim(side.rim)), (other.surface, SurfaceLine::Rim(other.rim))];
-            found.joints.push(SurfaceJoint { lines, smoothness: classify(&a, &b, &meeting) });
+            meetings.push((side, other, meeting));
             met[one] = true;
             met[one + 1 + offset] = true;
         }
     }
+    let joint = |(side, other, meeting): &(&SideOf, &SideOf, Meeting)| {
+        let lines =
+            [(side.surface, SurfaceLine::Rim(side.rim)), (other.surface, SurfaceLine::Rim(other.rim))];
+        let smoothness = classify(&side.line(surfaces), &other.line(surfaces), meeting);
+        SurfaceJoint { lines, smoothness }
+    };
+    found.joints.par_extend(meetings.par_iter().map(joint));
     found
         .open
         .extend(sides.iter().zip(&met).filter(|(_, met)| !**met).map(|(side, _)| (side.surface, side.rim)));
@@ -152,7 +157,8 @@ pub fn joints<S: Surface>(surfaces: &[S]) -> SurfaceJoints {
     found
 }
 
-fn inner_joints<S: Surface>(index: usize, surface: &S, found: &mut Vec<SurfaceJoint>) {
+fn inner_joints<S: Surface>(index: usize, surface: &S) -> Vec<SurfaceJoint> {
+    let mut found = Vec::new();
     for (along_u, breaks) in [(false, surface.breaks_u()), (true, surface.breaks_v())] {
         for t in breaks {
             let line = |side: Side| Line::inner(surface, along_u, t, side);
@@ -162,6 +168,7 @@ fn inner_joints<S: Surface>(index: usize, surface: &S, found: &mut Vec<SurfaceJo
             found.push(SurfaceJoint { lines: [(index, line); 2], smoothness });
         }
     }
+    found
 }
 
 /// How two sides run along each other.

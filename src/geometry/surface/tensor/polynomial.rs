@@ -97,7 +97,8 @@ impl PolynomialSurface {
         let hull = |order: usize, scale: f64| {
             let (points, columns) = self.bends.piece(self.patches.number(part.piece), order);
             let net = Net::new(points, columns).restricted(part.u, part.v);
-            Bounds::of_points(net.points().iter().map(|point| *point / scale))
+            let Bounds { min, max } = Bounds::of_points(net.points().iter().copied());
+            Bounds { min: min / scale, max: max / scale }
         };
         SecondRange { uu: hull(0, across * across), uv: hull(1, across * up), vv: hull(2, up * up) }
     }

@@ -1,6 +1,7 @@
 //! Blocks into triangles that share their edges, each within the tolerance.
 
 use glam::DVec3;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
 use super::density::Density;
 use super::judge::{judge, judge_chord};
@@ -43,14 +44,17 @@ const FEATURE: f64 = 0.01;
 const ROUNDS: usize = 3;
 
 /// Triangles of a block that are asked what they need.
-const ASKED: usize = 101;
+const ASKED: usize = 33;
+
+/// Edges or blocks that one thread takes at once.
+const AT_ONCE: usize = 4;
 
 /// Share of the triangles that the plan itself is to bring under the tolerance; the rest are refined.
 const PLANNED: f64 = 0.95;
 
 impl<'a> Net<'a> {
     pub(super) fn new(layout: Layout<'a>, detail: &Detail) -> Result<Self, TessellateError> {
-        let turns = layout.edges.iter().map(|edge| turn(&layout, edge)).collect();
+        let turns = layout.edges.par_iter().with_min_len(AT_ONCE).map(|edge| turn(&layout, edge)).collect();
         let mut plans = plans(&layout, detail)?;
         let fixed = matches!(detail.density, SurfaceDensity::Grid { .. });
         let (points, pieces, lattices) = (Vec::new(), Vec::new(), Vec::new());
@@ -60,12 +64,20 @@ impl<'a> Net<'a> {
             net.deviation = net.measure();
             return Ok(net);
         };
+        // A block whose triangles say that its plan is right is not asked again: what neighbors change is its rim.
+        let mut right = vec![false; plans.len()];
         for round in 0..ROUNDS {
             net.weave(&plans, detail)?;
             detail.allow(net.triangles())?;
-            let factors: Vec<f64> =
-                (0..plans.len()).map(|block| net.correction(block, &plans[block], tolerance)).collect();
-            if round + 1 == ROUNDS || factors.iter().all(|factor| *factor == 1.0) {
+            if round + 1 == ROUNDS {
+                break;
+            }
+            let factor = |(block, right): (usize, &bool)| {
+                if *right { 1.0 } else { net.correction(block, &plans[block], tolerance) }
+            };
+            let factors: Vec<f64> = right.par_iter().enumerate().map(factor).collect();
+            right = factors.iter().map(|factor| *factor == 1.0).collect();
+            if right.iter().all(|right| *right) {
                 break;
             }
             plans.iter_mut().zip(factors).for_each(|(plan, factor)| plan.scale(factor));
@@ -311,16 +323,14 @@ fn plans(layout: &Layout<'_>, detail: &Detail) -> Result<Vec<Plan>, TessellateEr
         SurfaceDensity::Grid { u, v } => return grids(layout, (u, v), detail),
         SurfaceDensity::Tolerance(tolerance) => tolerance,
     };
-    let mut plans = Vec::with_capacity(layout.blocks.len());
-    let mut needed = 0.0;
-    for block in &layout.blocks {
+    let plan = |block: &Block<'_>| {
         let poles = Rim::ALL.map(|rim| layout.edges[block.edge(rim).edge].pole);
-        let plan = Plan::new(block, tolerance, poles);
-        needed += plan.triangles;
-        plans.push(plan);
-        // The plan may err; by half it does not.
-        detail.allow(floor_large(needed / 2.0))?;
-    }
+        Plan::new(block, tolerance, poles)
+    };
+    let plans: Vec<Plan> = layout.blocks.par_iter().with_min_len(AT_ONCE).map(plan).collect();
+    // The plan may err; by half it does not.
+    let needed: f64 = plans.iter().map(|plan| plan.triangles).sum();
+    detail.allow(floor_large(needed / 2.0))?;
     Ok(plans)
 }
 

@@ -5,8 +5,10 @@
 
 use std::collections::HashMap;
 
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+
 use super::judge::halfway;
-use super::net::Net;
+use super::net::{Judged, Net};
 use super::rows::{Corner, Free};
 use crate::geometry::mesh::index;
 use crate::geometry::tessellate::{Detail, Deviation, TessellateError};
@@ -17,6 +19,12 @@ const ROUNDS: usize = 24;
 /// Times the triangles of the plan, and triangles on top of them, after which refining has no end: a surface that folds
 /// in its own plane has a line along which no triangle is good. The bound then says what is left.
 const MOST: (u64, u64) = (64, 50_000);
+
+/// Triangles that are judged before their verdicts are put together.
+const AT_ONCE: usize = 1 << 14;
+
+/// Triangles that one thread judges before it looks for others.
+const APIECE: usize = 32;
 
 /// Sides that bend by this share of the worst are split with it.
 const LIKE_THE_WORST: f64 = 0.55;
@@ -38,14 +46,17 @@ pub(super) fn refine(
         let mut failed = Deviation::NONE;
         let mut kept: Vec<(usize, u32, Deviation)> = Vec::new();
         for (block, list) in fresh.iter().enumerate() {
-            for number in list {
-                let triangle = net.pieces[block].triangles[*number as usize];
-                let judged = net.judge(block, &triangle, tolerance);
-                if judged.bound <= tolerance {
-                    kept.push((block, *number, judged.deviation()));
-                } else {
-                    failed = failed.union(judged.deviation());
-                    mark(net, block, &triangle, judged.sides, &mut marks);
+            let triangles = &net.pieces[block].triangles;
+            for part in list.chunks(AT_ONCE) {
+                let verdict = |number: &u32| net.judge(block, &triangles[*number as usize], tolerance);
+                let judged: Vec<Judged> = part.par_iter().with_min_len(APIECE).map(verdict).collect();
+                for (number, judged) in part.iter().zip(judged) {
+                    if judged.bound <= tolerance {
+                        kept.push((block, *number, judged.deviation()));
+                    } else {
+                        failed = failed.union(judged.deviation());
+                        mark(net, block, &triangles[*number as usize], judged.sides, &mut marks);
+                    }
                 }
             }
         }
