@@ -67,12 +67,23 @@ impl Builder<'_> {
         if !good {
             return None;
         }
-        let own: Vec<ClipTrack> = tracks.iter().map(|(track, _)| track.clone()).collect();
+        let mut own: Vec<ClipTrack> = tracks.iter().map(|(track, _)| track.clone()).collect();
         let (rate, looped) = (written.rate.value, written.r#loop.value);
+        if !self.aims.is_empty() && !written.reach.is_empty() {
+            // What looks may carry a skeleton; once joints have reached, it looks again.
+            let frames = Frames { tracks: &own, duration, rate, looped };
+            let looking = self.aim_tracks(&frames, span)?;
+            own.extend(looking);
+        }
         let frames = Frames { tracks: &own, duration, rate, looped };
         let (solved, reaches) = self.reaches(written, &frames)?;
         let reached = written.reach.first().map_or(span, |reach| reach.span);
         tracks.extend(solved.into_iter().map(|track| (track, reached)));
+        if !self.aims.is_empty() {
+            let own: Vec<ClipTrack> = tracks.iter().map(|(track, _)| track.clone()).collect();
+            let frames = Frames { tracks: &own, duration, rate, looped };
+            tracks.extend(self.aim_tracks(&frames, span)?.into_iter().map(|track| (track, span)));
+        }
         if written.limits.value == LimitRule::Error {
             self.check_limits(&tracks, duration)?;
         }
@@ -121,8 +132,9 @@ impl Builder<'_> {
     }
 
     fn check_samples(&mut self, written: &spec::Clip, duration: f64, span: Span) -> Option<()> {
-        let moving =
-            written.track.len() + self.model.skeletons.iter().map(|s| s.skeleton.joints.len()).sum::<usize>();
+        let moving = written.track.len()
+            + self.aims.len()
+            + self.model.skeletons.iter().map(|s| s.skeleton.joints.len()).sum::<usize>();
         let samples = floor_large(duration * written.rate.value) * (moving as u64 + 8);
         if samples <= MOST_SAMPLES {
             return Some(());

@@ -58,12 +58,14 @@ mod skin;
 mod solid;
 mod spline;
 mod split;
+mod stage;
 mod subdivide;
 mod svg;
 mod sweep;
 mod trimmed;
 mod turned;
 mod vertex_color;
+mod view;
 
 use std::sync::Arc;
 
@@ -165,6 +167,8 @@ struct Builder<'a> {
     morph_places: Vec<Span>,
     /// Where each collider is defined.
     collider_places: Vec<Span>,
+    /// Nodes that look at something, those that carry others first.
+    aims: Vec<view::Aimed>,
     reports: Vec<Diagnostic>,
     shapes: IndexMap<String, Option<ShapeHandle>>,
     materials: IndexMap<String, Option<MaterialHandle>>,
@@ -213,6 +217,7 @@ impl<'a> Builder<'a> {
             clip_places: Vec::new(),
             morph_places: Vec::new(),
             collider_places: Vec::new(),
+            aims: Vec::new(),
             reports: Vec::new(),
             shapes: IndexMap::new(),
             materials: IndexMap::new(),
@@ -251,6 +256,7 @@ impl<'a> Builder<'a> {
         self.check_shown_nodes();
         let played = self.frames();
         self.attach_nodes();
+        self.aim_nodes();
         self.skins();
         self.morphs(states);
         self.clips();

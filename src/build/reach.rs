@@ -4,12 +4,13 @@
 //! targets leave free settles. The poses of a loop come back to where they began: what is open at its seam is spread
 //! over all of it.
 
-use glam::{DAffine3, DQuat, DVec3, DVec4};
+use glam::{DQuat, DVec3, DVec4};
 
 use super::Builder;
 use super::course::Moved;
 use super::profile::show;
 use super::skeleton::unknown_joint;
+use super::stage::Stage;
 use crate::geometry::number::{floor_count, floor_large, single};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
@@ -17,7 +18,7 @@ use crate::language::spec::{self, ReachRule, Sp};
 use crate::model::{ClipTrack, ReachTask, Space, Target};
 use crate::motion::{
     Angles, Course, EulerOrder, Goal, Interpolation, InverseKinematics, Keys, Law, Path, Reached, Search,
-    Skeleton, Stand, Track, Transform,
+    Skeleton, Track,
 };
 
 /// The share of a pose that is drawn back to rest from frame to frame.
@@ -376,75 +377,4 @@ fn turned(
         }
     }
     tracks
-}
-
-/// Nodes and joints as the tracks of a clip move them, for where skeletons stand.
-struct Stage<'b> {
-    builder: &'b Builder<'b>,
-    tracks: Vec<(&'b ClipTrack, Track<'b>)>,
-}
-
-impl<'b> Stage<'b> {
-    fn new(builder: &'b Builder<'_>, tracks: &'b [ClipTrack]) -> Self {
-        let tracks = tracks.iter().map(|track| (track, Track::new(&track.course))).collect();
-        Self { builder, tracks }
-    }
-
-    fn stand(&self, skeleton: usize, time: f64) -> Stand {
-        let named = &self.builder.model.skeletons[skeleton];
-        let local = |joint: usize| {
-            self.moved(Target::Joint { skeleton, joint }, named.skeleton.joints[joint].rest, time)
-        };
-        Stand {
-            base: named.parent.map_or(DAffine3::IDENTITY, |node| self.node(node, time, 0)),
-            local: (0..named.skeleton.joints.len()).map(local).collect(),
-        }
-    }
-
-    fn node(&self, index: usize, time: f64, depth: usize) -> DAffine3 {
-        let model = &self.builder.model;
-        let node = &model.nodes[index];
-        let frame = &model.frame;
-        let turn = frame.turn();
-        let rest = Transform {
-            translation: frame.map().transform_point3(node.translation),
-            rotation: (turn * node.rotation * turn.conjugate()).normalize(),
-            scale: frame.scale(node.scale),
-        };
-        let own = self.moved(Target::Node(index), rest, time).map();
-        // Nodes that carry each other in a circle are told of elsewhere.
-        if depth > model.nodes.len() + model.skeletons.len() {
-            return own;
-        }
-        let outside = match (node.parent, node.socket) {
-            (Some(parent), _) => self.node(parent, time, depth + 1),
-            (None, Some(socket)) => {
-                let named = &model.skeletons[socket.skeleton];
-                let place = &named.sockets[socket.socket];
-                self.joint(socket.skeleton, place.joint, time, depth + 1) * place.place.map()
-            }
-            (None, None) => DAffine3::IDENTITY,
-        };
-        outside * own
-    }
-
-    fn joint(&self, skeleton: usize, joint: usize, time: f64, depth: usize) -> DAffine3 {
-        let named = &self.builder.model.skeletons[skeleton];
-        let mut map = DAffine3::IDENTITY;
-        let mut next = Some(joint);
-        while let Some(one) = next {
-            let rest = named.skeleton.joints[one].rest;
-            map = self.moved(Target::Joint { skeleton, joint: one }, rest, time).map() * map;
-            next = named.skeleton.joints[one].bone.parent;
-        }
-        named.parent.map_or(DAffine3::IDENTITY, |node| self.node(node, time, depth + 1)) * map
-    }
-
-    fn moved(&self, target: Target, rest: Transform, time: f64) -> Transform {
-        let mut place = rest;
-        for (track, playing) in self.tracks.iter().filter(|(track, _)| track.target == target) {
-            track.put(&mut place, &rest, playing.at(time), &self.builder.model.frame);
-        }
-        place
-    }
 }

@@ -16,7 +16,7 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, Sp, kebab};
 use crate::model::{
-    self, Clip, ClipTrack, LightKind, Node, Recipe, Shape, ShapeHandle, ShapeOptions, Space, Target,
+    self, Clip, ClipTrack, Lens, LightKind, Node, Recipe, Shape, ShapeHandle, ShapeOptions, Space, Target,
 };
 use crate::motion::{Course, Interpolation, Keys, Law};
 
@@ -313,7 +313,7 @@ impl Builder<'_> {
         let away = camera.place.distance(camera.target).max(1e-6);
         let near = camera.range.map_or(away * NEAR, |(near, _)| near);
         let far = camera.range.map(|(_, far)| far * unit);
-        model::Camera { upright, aspect: ASPECT, near: near * unit, far }
+        model::Camera { lens: Lens::Perspective { upright }, aspect: ASPECT, near: near * unit, far }
     }
 
     /// A light; lengths become metres. What 3D Studio shows at full strength is 100 candela here, at any distance.

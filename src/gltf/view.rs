@@ -1,30 +1,45 @@
 //! Cameras, and lights by `KHR_lights_punctual`, which is used and never required.
 
 use gltf::json::Root;
-use gltf::json::camera::{Camera, Perspective, Type};
+use gltf::json::camera::{Camera, Orthographic, Perspective, Type};
 use gltf::json::validation::Checked as Valid;
 use serde_json::{Value, json};
 
 use crate::geometry::number::single;
-use crate::scene::{self, Light, LightKind, Scene};
+use crate::scene::{self, Lens, Light, LightKind, Scene};
 
 /// The extension of lights.
 pub(super) const LIGHTS: &str = "KHR_lights_punctual";
 
 /// A camera of a node.
 pub(super) fn camera(name: &str, camera: &scene::Camera) -> Camera {
+    let (near, far) = (single(camera.near), camera.far.map(single));
+    let (perspective, orthographic) = match camera.lens {
+        Lens::Perspective { upright } => {
+            let aspect = Some(single(camera.aspect));
+            let yfov = single(upright.to_radians());
+            let seen = Perspective {
+                aspect_ratio: aspect,
+                yfov,
+                zfar: far,
+                znear: near,
+                extensions: None,
+                extras: None,
+            };
+            (Some(seen), None)
+        }
+        Lens::Parallel { height } => {
+            // Half of what it sees.
+            let (xmag, ymag) = (single(height * camera.aspect / 2.0), single(height / 2.0));
+            let zfar = far.unwrap_or(f32::MAX);
+            (None, Some(Orthographic { xmag, ymag, zfar, znear: near, extensions: None, extras: None }))
+        }
+    };
     Camera {
         name: Some(name.to_owned()),
-        orthographic: None,
-        perspective: Some(Perspective {
-            aspect_ratio: Some(single(camera.aspect)),
-            yfov: single(camera.upright.to_radians()),
-            zfar: camera.far.map(single),
-            znear: single(camera.near),
-            extensions: None,
-            extras: None,
-        }),
-        type_: Valid::Valid(Type::Perspective),
+        type_: Valid::Valid(if perspective.is_some() { Type::Perspective } else { Type::Orthographic }),
+        perspective,
+        orthographic,
         extensions: None,
         extras: None,
     }
@@ -49,7 +64,11 @@ pub(super) fn lights(root: &mut Root, scene: &Scene) -> Vec<Option<Value>> {
 fn light(name: &str, light: &Light) -> Value {
     let mut made = json!({
         "name": name,
-        "type": if light.kind == LightKind::Point { "point" } else { "spot" },
+        "type": match light.kind {
+            LightKind::Point => "point",
+            LightKind::Sun => "directional",
+            LightKind::Spot { .. } => "spot",
+        },
         "color": light.color.map(single),
         "intensity": single(light.intensity),
     });

@@ -30,7 +30,7 @@ pub use shape::{Density, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, Uv
 pub use solid::{Hollow, KeptSide, PlaneCut, SolidOperation, SolidRecipe};
 pub use subdivide::SubdivisionRecipe;
 pub use vertex_color::{ColorLaw, VertexColor};
-pub use view::{Camera, Light, LightKind};
+pub use view::{Camera, Lens, Light, LightKind};
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
@@ -89,7 +89,7 @@ pub struct Node {
     pub is_socket: bool,
     /// The camera that looks along its -z from there.
     pub camera: Option<Camera>,
-    /// The light that shines from there, along its -z if it is a spot.
+    /// The light that shines from there, along its -z if it is a spot or sun.
     pub light: Option<Light>,
     /// Applied last.
     pub translation: DVec3,

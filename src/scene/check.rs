@@ -8,7 +8,7 @@ mod motion;
 
 use crate::geometry::mesh::{Color, VertexIndex};
 
-use super::{Camera, Collider, Geometry, Light, LightKind, MeshUse, Node, Scene};
+use super::{Camera, Collider, Geometry, Lens, Light, LightKind, MeshUse, Node, Scene};
 
 /// A scene that holds what glTF demands. Made only by [`check`].
 #[derive(Clone, Copy, Debug)]
@@ -118,8 +118,12 @@ pub fn check(scene: &Scene) -> Result<Checked<'_>, SceneError> {
 
 fn check_view(node: &Node) -> Result<(), SceneError> {
     let held = |value: f64| value > 0.0 && value <= f64::from(f32::MAX);
-    if let Some(Camera { upright, aspect, near, far }) = node.camera {
-        let sees = upright > 0.0 && upright < 180.0 && held(aspect) && held(near);
+    if let Some(Camera { lens, aspect, near, far }) = node.camera {
+        let draws = match lens {
+            Lens::Perspective { upright } => upright > 0.0 && upright < 180.0,
+            Lens::Parallel { height } => held(height) && held(height * aspect) && far.is_some(),
+        };
+        let sees = draws && held(aspect) && held(near);
         if !sees || far.is_some_and(|far| !held(far) || far <= near) {
             return Err(SceneError::View(node.name.clone(), "camera"));
         }
@@ -128,7 +132,7 @@ fn check_view(node: &Node) -> Result<(), SceneError> {
         let lit =
             color.iter().all(|part| (0.0..=1.0).contains(part)) && (intensity == 0.0 || held(intensity));
         let cone = match kind {
-            LightKind::Point => true,
+            LightKind::Point | LightKind::Sun => true,
             LightKind::Spot { inner, outer } => inner >= 0.0 && inner < outer && outer <= 90.0,
         };
         if !lit || !cone || range.is_some_and(|range| !held(range)) {

@@ -14,7 +14,7 @@ pub use morph::MorphTarget;
 pub use motion::{Animation, Channel, Skin};
 
 pub use crate::model::{
-    AlphaMode, Camera, Filter, Image, ImageHandle, ImageKind, Light, LightKind, Material, Texture, Wrap,
+    AlphaMode, Camera, Filter, Image, ImageHandle, ImageKind, Lens, Light, LightKind, Material, Texture, Wrap,
 };
 
 use glam::{DQuat, DVec3};
@@ -159,7 +159,7 @@ pub struct Node {
     pub socket: bool,
     /// The camera that looks along its -z from there.
     pub camera: Option<Camera>,
-    /// The light that shines from there, along its -z if it is a spot.
+    /// The light that shines from there, along its -z if it is a spot or sun.
     pub light: Option<Light>,
     /// Index of the parent.
     pub parent: Option<usize>,

@@ -453,6 +453,11 @@ codes! {
     NoParts = "K1053";
     /// parts of a collider that are less convex than was asked for
     RoughParts = "K1054";
+
+    /// nodes whose aims depend on each other
+    AimCircle = "K1070";
+    /// a node is where it looks
+    AimAtItself = "K1071";
 }
 
 impl serde::Serialize for Code {

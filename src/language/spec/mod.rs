@@ -74,6 +74,7 @@ mod sweep;
 mod tangent;
 mod trimmed;
 mod vertex_color;
+mod view;
 mod whole;
 mod wire;
 
@@ -160,6 +161,7 @@ pub use sweep::{Frame, ProfileStation, Sweep};
 pub use tangent::{Cardinal, CatmullRom, ChordPower, EndRule, Hermite, KochanekBartels, PerPoint};
 pub use trimmed::Trimmed;
 pub use vertex_color::{VertexColor, VertexColorFormulas};
+pub use view::{Aim, Camera, Light, LightKind};
 pub use whole::schema;
 pub use wire::Wire;
 

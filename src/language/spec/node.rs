@@ -12,6 +12,7 @@ use crate::language::spec::point::Scale;
 use crate::language::spec::reader::Reader;
 use crate::language::spec::reference::{MaterialName, NodeName, ShapeName};
 use crate::language::spec::spanned::Sp;
+use crate::language::spec::view::{Aim, Camera, Light};
 
 table! {
     /// A place in the model: it shows a shape, or only carries other nodes. Nodes that show the same shape share one mesh.
@@ -28,6 +29,14 @@ table! {
         rotate: Sp<DVec3> = DVec3::ZERO;
         /// How far it is moved from its parent, in the document's unit.
         at: Sp<DVec3> = DVec3::ZERO;
+        /// What it looks at, in place of `rotate`: the name of a node, or a point of the model in the document's unit and axes.
+        /// A node with a camera or light looks as those do; of any other z looks there, and where z points up in the document
+        /// -y, the front of a model. The document's upward axis stays up. In clips it goes on looking.
+        aim: Option<Sp<Aim>>;
+        /// What is seen from there.
+        camera: Option<Sp<Camera>>;
+        /// What shines from there.
+        light: Option<Sp<Light>>;
         /// The name of a material, in place of the shape's own.
         material: Option<Sp<MaterialName>>;
         /// A whole scene from a file, as `[node.NAME.import]`: the node carries it.
@@ -64,6 +73,13 @@ impl Node {
             let report = Diagnostic::error(Code::Conflict, message)
                 .at(shape.span, "cannot stand beside `import`")
                 .also(import.span, "the import");
+            reader.report(report);
+            return false;
+        }
+        if let (Some(aim), false) = (&self.aim, self.rotate.span.is_none()) {
+            let report = Diagnostic::error(Code::Conflict, "a node is turned by `rotate` or by `aim`")
+                .at(aim.span, "cannot stand beside `rotate`")
+                .also(self.rotate.span, "turned here");
             reader.report(report);
             return false;
         }

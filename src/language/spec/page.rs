@@ -164,7 +164,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
     (
         "Nodes",
         "A document without nodes shows each shape that no other definition uses.",
-        &["node", "scene import"],
+        &["node", "camera", "light", "scene import"],
     ),
     (
         "Motion",

@@ -114,6 +114,11 @@ impl<'a> Reader<'a> {
         self.uses.push(Use { family, name: name.to_owned(), span, user, quoted: true });
     }
 
+    /// Notes a name that says nothing of what is made of what.
+    pub(crate) fn uses_alone(&mut self, family: Family, name: &str, span: Span) {
+        self.uses.push(Use { family, name: name.to_owned(), span, user: None, quoted: true });
+    }
+
     /// Notes a name inside a text; `exact` tells whether the span is that of the name alone.
     pub(crate) fn uses_inside(&mut self, family: Family, name: &str, span: Span, exact: bool) {
         let user = self.user.clone();
