@@ -4,6 +4,7 @@ mod assertion;
 mod collider;
 mod engine;
 mod file;
+mod kept;
 mod lod;
 mod motion;
 mod notice;
@@ -19,6 +20,8 @@ pub use origin::Origins;
 pub(crate) use profile::profile_of;
 use profile::profiles;
 
+use std::sync::Arc;
+
 use crate::build::{self, Built};
 use crate::geometry::curve::AnyCurve;
 use crate::geometry::number::{Bounds, single_rounding};
@@ -30,7 +33,7 @@ use crate::language::source::{Files, Span};
 use crate::language::spec::{Assertion, Spec};
 use crate::model::{Model, ShapeHandle};
 use crate::optimize::{Order, Rounding};
-use crate::realize::{self, RealizeError, Realized};
+use crate::realize::{self, Keep, Memo, RealizeError, Realized};
 use crate::report::{About, Report};
 use crate::scene::SceneError;
 use crate::{gltf, optimize, report, scene};
@@ -54,6 +57,8 @@ pub struct Options {
     pub origins: bool,
     /// Keep how far each triangle is from the exact surface.
     pub deviations: bool,
+    /// Where realized shapes are kept from one bake to the next.
+    pub keep: Option<Arc<dyn Keep>>,
     /// For whom files are; where empty, for whom the document says, and without that, for all.
     pub profiles: Vec<Profile>,
 }
@@ -121,7 +126,8 @@ pub fn compile_profiles(
     if let Some(same) = same_file(document, &spec, &profiles) {
         return Err(fail(vec![same]));
     }
-    let made = Made { document, spec: &spec, built: &built, options };
+    let memo = options.keep.as_deref().map(|keep| Memo::new(&built.model, keep));
+    let made = Made { document, spec: &spec, built: &built, options, memo: memo.as_ref() };
     // One scene for floats, and one for whole numbers.
     let mut scenes: [Option<Surfaces>; 2] = [None, None];
     let mut said: Vec<Diagnostic> = Vec::new();
@@ -171,6 +177,7 @@ struct Made<'a> {
     spec: &'a Spec,
     built: &'a Built,
     options: &'a Options,
+    memo: Option<&'a Memo<'a>>,
 }
 
 /// Surfaces as triangles, and the part of the tolerance that is left for rounding.
@@ -205,8 +212,8 @@ impl Made<'_> {
     fn surfaces_within(&self, share: f64) -> Result<(Surfaces, Vec<Diagnostic>), Vec<Diagnostic>> {
         let built = self.built;
         let coarser = 1.0 - share;
-        let realized =
-            realize::scene(&built.model, &realize::Options { coarser, ..realize::Options::default() });
+        let options = realize::Options { coarser, memo: self.memo, ..realize::Options::default() };
+        let realized = realize::scene(&built.model, &options);
         let mut realized = realized.map_err(|errors| refusals(built, errors))?;
         for geometry in &mut realized.scene.geometries {
             geometry.tolerance = geometry.tolerance.map(|tolerance| tolerance / coarser);
@@ -243,7 +250,8 @@ impl Made<'_> {
         realize::normal_maps(&built.model, &mut scene, &shapes).map_err(|errors| refusals(built, errors))?;
         lod::settle(&mut scene, &mut shapes);
         // What encloses a shape encloses its written places.
-        let coarser = realize::Options { coarser: 1.0 - share, ..realize::Options::default() };
+        let coarser =
+            realize::Options { coarser: 1.0 - share, memo: self.memo, ..realize::Options::default() };
         let colliders = realize::colliders(&built.model, &coarser, &shapes, &scene);
         scene.colliders = colliders.map_err(|errors| refusals(built, errors))?;
         collider::hold(&mut scene, engine::collider_form(profile, spec));

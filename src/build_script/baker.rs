@@ -1,6 +1,7 @@
 //! One document for a build script: baked, or taken from the cache.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -13,6 +14,7 @@ use crate::language;
 use crate::language::diagnostic::Diagnostics;
 use crate::language::source::{FileRecord, Files as _};
 use crate::project::{Task, Told, reason};
+use crate::realize::Keep;
 
 /// Bakes documents as a build asks for.
 pub(super) struct Baker<'a> {
@@ -20,7 +22,7 @@ pub(super) struct Baker<'a> {
     pub(super) profiles: Vec<Profile>,
     /// Parameters that the project gives to those documents that have them.
     pub(super) given: Vec<(String, String)>,
-    pub(super) cache: Option<&'a Cache>,
+    pub(super) cache: Option<&'a Arc<Cache>>,
 }
 
 /// What came of one document.
@@ -53,7 +55,7 @@ pub(super) struct Facts {
 
 impl Baker<'_> {
     pub(super) fn document(&self, task: &Task) -> Document {
-        let cached = self.cache.map(|cache| (cache, self.key(cache, task)));
+        let cached = self.cache.map(|cache| (cache.as_ref(), self.key(cache, task)));
         let known = cached.as_ref().and_then(|(cache, key)| self.known(task, (cache, key)));
         known.unwrap_or_else(|| self.baked(task, cached))
     }
@@ -103,6 +105,7 @@ impl Baker<'_> {
                 path: task.path.clone(),
                 no_report: !build.report,
                 profiles: self.profiles.clone(),
+                keep: self.cache.map(|cache| Arc::clone(cache) as Arc<dyn Keep>),
                 ..Options::default()
             };
             let variant = options.variant.as_deref();

@@ -15,6 +15,7 @@ mod names;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
@@ -171,7 +172,7 @@ impl Build {
             return Err(fail(format!("no document (.toml) in {}", self.folder.display())));
         }
         let mut done = BuiltAssets { module: out.join(self.module_name()), ..BuiltAssets::default() };
-        let cache = self.opened(&mut done.warnings);
+        let cache = self.opened(&mut done.warnings).map(Arc::new);
         let baker = self.baker(project.as_ref(), cache.as_ref());
         let baked: Vec<Document> = tasks.par_iter().map(|task| baker.document(task)).collect();
         done.warnings.extend(cache.and_then(|cache| cache.finish()).map(|trouble| unusable(&trouble)));
@@ -254,7 +255,7 @@ impl Build {
             .ok()
     }
 
-    fn baker<'a>(&'a self, project: Option<&Project>, cache: Option<&'a Cache>) -> Baker<'a> {
+    fn baker<'a>(&'a self, project: Option<&Project>, cache: Option<&'a Arc<Cache>>) -> Baker<'a> {
         let file = project.map(|project| &project.file.project);
         let of_project = file.and_then(|file| file.profiles.as_ref());
         let profiles = match of_project {

@@ -3,7 +3,7 @@
 use blake3::Hash;
 use serde::{Deserialize, Serialize};
 
-use super::store::Store;
+use super::store::{Kind, Store};
 use crate::language::source::FileRecord;
 
 /// Sets of inputs that are remembered: who goes back to what was there before finds it.
@@ -36,11 +36,11 @@ pub(super) struct Input {
 
 impl Manifest {
     pub(super) fn read(store: &Store, key: &Hash) -> Option<Self> {
-        serde_json::from_slice(&store.manifest(key)?).ok()
+        serde_json::from_slice(&store.entry(Kind::Manifest, key)?).ok()
     }
 
     pub(super) fn write(&self, store: &Store, key: &Hash) -> std::io::Result<()> {
-        store.put_manifest(key, &serde_json::to_vec(self)?)
+        store.put_entry(Kind::Manifest, key, &serde_json::to_vec(self)?)
     }
 
     /// The first set whose inputs are all the same.

@@ -4,6 +4,9 @@
 //! file that was asked for with the hash of its bytes or as missing, and for each set what came of it: a record. Records
 //! and outputs are objects, stored under the hash of their bytes.
 //!
+//! Below that, realized shapes stand under the hash of all that they depend on: a document whose materials alone changed cuts no
+//! surface again.
+//!
 //! Promise: what is found is what a bake would give. Every object is hashed before it is used; what is broken, cut off or
 //! gone counts as not found and is made again. Any number of processes may use one folder, and be killed at any moment:
 //! files appear whole or not at all. A folder that cannot be written costs its use and nothing else. Not promised: that a
@@ -11,20 +14,23 @@
 //! seen.
 
 mod manifest;
+mod memory;
 mod record;
 mod stamp;
 mod store;
 
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use blake3::Hash;
 
 use crate::language::source::{DiskFiles, FileRecord, Files as _};
 use manifest::Manifest;
+pub use memory::Memory;
 pub use record::{Baked, OutputFile, Record};
 use stamp::Stamps;
-use store::Store;
+use store::{Kind, Store};
 pub use store::{Stats, Verified};
 
 /// What a document is baked with; equal keys with equal inputs give equal outputs.
@@ -47,6 +53,8 @@ pub struct Cache {
     compiler: Hash,
     /// The first trouble with writing; the rest would be the same.
     trouble: Mutex<Option<String>>,
+    /// Realized shapes that were found, and that were kept.
+    shapes: [AtomicUsize; 2],
 }
 
 /// What is known of a document.
@@ -67,7 +75,7 @@ impl Cache {
         let store = Store::open(folder, limit)?;
         let stamps = Stamps::load(&store);
         let compiler = compiler(&stamps);
-        Ok(Self { store, stamps, compiler, trouble: Mutex::default() })
+        Ok(Self { store, stamps, compiler, trouble: Mutex::default(), shapes: Default::default() })
     }
 
     /// The key of this compiler and the parts in their order.
@@ -95,7 +103,7 @@ impl Cache {
         let entry = manifest.find(same)?;
         let bytes = self.store.object(&entry.record)?;
         let record = serde_json::from_slice(&bytes).ok()?;
-        self.store.touch_manifest(&key.0);
+        self.store.touch(Kind::Manifest, &key.0);
         let inputs = entry.inputs.iter().filter(|input| input.hash.is_some());
         Some(Hit { record, inputs: inputs.map(|input| input.path.clone()).collect() })
     }
@@ -119,7 +127,37 @@ impl Cache {
         if read.iter().any(|file| file.found && file.hash.is_none()) {
             return;
         }
-        if let Err(error) = self.write(key, read, record, files) {
+        self.note(self.write(key, read, record, files));
+    }
+
+    /// A realized shape under what it depends on, whole and unbroken.
+    #[must_use]
+    pub fn shape(&self, key: &Hash) -> Option<Vec<u8>> {
+        let key = self.of_compiler(key);
+        let bytes = self.store.entry(Kind::Shape, &key)?;
+        self.store.touch(Kind::Shape, &key);
+        self.shapes[0].fetch_add(1, Ordering::Relaxed);
+        Some(bytes)
+    }
+
+    /// Keeps a realized shape under what it depends on.
+    pub fn keep_shape(&self, key: &Hash, bytes: &[u8]) {
+        self.shapes[1].fetch_add(1, Ordering::Relaxed);
+        self.note(self.store.put_entry(Kind::Shape, &self.of_compiler(key), bytes));
+    }
+
+    /// How many realized shapes were found, and how many were made and kept.
+    #[must_use]
+    pub fn shape_counts(&self) -> [usize; 2] {
+        [0, 1].map(|which| self.shapes[which].load(Ordering::Relaxed))
+    }
+
+    fn of_compiler(&self, key: &Hash) -> Hash {
+        blake3::keyed_hash(self.compiler.as_bytes(), key.as_bytes())
+    }
+
+    fn note(&self, result: std::io::Result<()>) {
+        if let Err(error) = result {
             let mut trouble = self.trouble.lock().unwrap_or_else(PoisonError::into_inner);
             trouble.get_or_insert(error.to_string());
         }

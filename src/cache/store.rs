@@ -1,7 +1,7 @@
-//! The folder of a cache: objects under the hash of their bytes, manifests under their keys.
+//! The folder of a cache: objects under the hash of their bytes, manifests and realized shapes under their keys.
 //!
-//! Every file is written under another name first and then given its own, so that readers see it whole or not at all. Small
-//! files end with their own hash. The last use of a file is its time of modification.
+//! Every file is written under another name first and then given its own, so that readers see it whole or not at all. What
+//! stands under a key ends with its own hash. The last use of a file is its time of modification.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -36,6 +36,8 @@ pub struct Stats {
     pub documents: u64,
     /// Records and outputs.
     pub objects: u64,
+    /// Realized shapes.
+    pub shapes: u64,
     /// Bytes of all of them.
     pub bytes: u64,
 }
@@ -49,16 +51,20 @@ pub struct Verified {
     pub broken: u64,
 }
 
-/// The two kinds of files.
+/// The kinds of files: objects under the hash of their bytes, the others under a key.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
+pub(super) enum Kind {
     Object,
     Manifest,
+    Shape,
 }
 
 impl Kind {
+    const ALL: [Self; 3] = [Self::Object, Self::Manifest, Self::Shape];
+
     const fn folder(self) -> &'static str {
         match self {
+            Self::Shape => "shapes",
             Self::Object => "objects",
             Self::Manifest => "manifests",
         }
@@ -132,19 +138,22 @@ impl Store {
         Ok(hash)
     }
 
-    pub(super) fn manifest(&self, key: &Hash) -> Option<Vec<u8>> {
-        let (folder, name) = self.place(Kind::Manifest, key);
+    /// What is kept under a key, unless it is broken.
+    pub(super) fn entry(&self, kind: Kind, key: &Hash) -> Option<Vec<u8>> {
+        let (folder, name) = self.place(kind, key);
         sealed(std::fs::read(folder.join(name)).ok()?)
     }
 
-    pub(super) fn put_manifest(&self, key: &Hash, text: &[u8]) -> io::Result<()> {
-        let (folder, name) = self.place(Kind::Manifest, key);
+    /// Keeps something under a key.
+    pub(super) fn put_entry(&self, kind: Kind, key: &Hash, bytes: &[u8]) -> io::Result<()> {
+        let (folder, name) = self.place(kind, key);
         self.grew.store(true, Ordering::Relaxed);
-        save(&folder, &[(&name, &seal(text))])
+        save(&folder, &[(&name, &seal(bytes))])
     }
 
-    pub(super) fn touch_manifest(&self, key: &Hash) {
-        let (folder, name) = self.place(Kind::Manifest, key);
+    /// Notes that what is kept under a key was used.
+    pub(super) fn touch(&self, kind: Kind, key: &Hash) {
+        let (folder, name) = self.place(kind, key);
         used(&folder.join(name));
     }
 
@@ -159,7 +168,7 @@ impl Store {
     /// All files; those that vanish meanwhile are not counted.
     fn all(&self) -> io::Result<Vec<Kept>> {
         let mut all = Vec::new();
-        for kind in [Kind::Object, Kind::Manifest] {
+        for kind in Kind::ALL {
             let folders = match std::fs::read_dir(self.folder.join(kind.folder())) {
                 Ok(folders) => folders,
                 Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
@@ -205,8 +214,8 @@ impl Store {
 
     pub(super) fn clear(&self) -> io::Result<Stats> {
         let before = self.stats()?;
-        for name in [Kind::Object.folder(), Kind::Manifest.folder()] {
-            gone(std::fs::remove_dir_all(self.folder.join(name)))?;
+        for kind in Kind::ALL {
+            gone(std::fs::remove_dir_all(self.folder.join(kind.folder())))?;
         }
         gone(std::fs::remove_file(self.folder.join("stamps")))?;
         Ok(before)
@@ -227,7 +236,7 @@ impl Kept {
         let name = self.path.file_name().unwrap_or_default().to_string_lossy();
         match self.kind {
             Kind::Object => blake3::hash(&bytes).to_hex().as_str() == name,
-            Kind::Manifest => sealed(bytes).is_some(),
+            Kind::Manifest | Kind::Shape => sealed(bytes).is_some(),
         }
     }
 }
@@ -237,6 +246,7 @@ fn count(all: &[Kept]) -> Stats {
     Stats {
         documents: of(Kind::Manifest),
         objects: of(Kind::Object),
+        shapes: of(Kind::Shape),
         bytes: all.iter().map(|kept| kept.bytes).sum(),
     }
 }

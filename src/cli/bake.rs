@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use serde_json::json;
 
@@ -23,6 +23,7 @@ use crate::language::source::Files as _;
 use crate::language::spec::{backtick, closest};
 use crate::language::{Document, PROJECT_FILE};
 use crate::project::{Project, Task, Told, reason, save};
+use crate::realize::Keep;
 
 /// Bakes all documents; one that fails does not stop the others.
 pub(crate) fn run(bake: &mut Bake, printer: &Printer) -> Outcome {
@@ -51,7 +52,7 @@ pub(crate) fn run(bake: &mut Bake, printer: &Printer) -> Outcome {
         names: tasks.iter().map(|task| task.output.to_lowercase()).collect(),
         printer,
         dependencies: Dependencies::default(),
-        cache: cache::opened(&bake.cache, project, printer),
+        cache: cache::opened(&bake.cache, project, printer).map(Arc::new),
         hits: AtomicUsize::new(0),
         parameters: Mutex::default(),
     };
@@ -89,7 +90,7 @@ struct Worker<'a> {
     names: BTreeSet<String>,
     printer: &'a Printer,
     dependencies: Dependencies,
-    cache: Option<Cache>,
+    cache: Option<Arc<Cache>>,
     /// Documents that were found in the cache.
     hits: AtomicUsize,
     /// The names of the parameters of all documents.
@@ -99,7 +100,7 @@ struct Worker<'a> {
 impl Worker<'_> {
     /// Bakes a document and its variants, or takes what was baked before.
     fn document(&self, (index, task): (usize, &Task), messages: &mut Vec<Message>) -> Outcome {
-        let cached = self.cache.as_ref().map(|cache| (cache, self.key(cache, task)));
+        let cached = self.cache.as_deref().map(|cache| (cache, self.key(cache, task)));
         if let Some((cache, key)) = &cached
             && let Some(outcome) = self.known((index, task), (cache, key), messages)
         {
@@ -132,6 +133,7 @@ impl Worker<'_> {
                 measure: self.bake.measure,
                 origins: false,
                 deviations: false,
+                keep: self.cache.clone().map(|cache| cache as Arc<dyn Keep>),
                 profiles: self.bake.profile.clone(),
             };
             match compile_profiles(&document, &files, &options) {
@@ -400,8 +402,15 @@ impl Worker<'_> {
         }
         if self.printer.verbose {
             let hits = self.hits.load(Ordering::Relaxed);
-            let text = format!("cache: {hits} of {documents} documents were baked before");
-            self.printer.result(&text, &json!({ "cache": { "hits": hits, "documents": documents } }));
+            let [found, kept] = cache.shape_counts();
+            let text = format!(
+                "cache: {hits} of {documents} documents were baked before; of the rest {found} shapes, {kept} more are kept now"
+            );
+            let shapes = json!({ "found": found, "kept": kept });
+            self.printer.result(
+                &text,
+                &json!({ "cache": { "hits": hits, "documents": documents, "shapes": shapes } }),
+            );
         }
     }
 }

@@ -76,13 +76,16 @@ pub(crate) fn run(command: &CacheCommand, printer: &Printer) -> Outcome {
 fn tell(
     folder: &Path,
     verb: &str,
-    Stats { documents, objects, bytes }: &Stats,
+    Stats { documents, objects, shapes, bytes }: &Stats,
     printer: &Printer,
 ) -> Outcome {
     let whole = usize::try_from(*bytes).unwrap_or(usize::MAX);
-    let text =
-        format!("{} {verb} {documents} documents, {objects} objects, {}", folder.display(), size(whole));
-    let object = json!({ "cache": folder.display().to_string(), "documents": documents, "objects": objects, "bytes": bytes });
+    let text = format!(
+        "{} {verb} {documents} documents, {objects} objects, {shapes} shapes, {}",
+        folder.display(),
+        size(whole)
+    );
+    let object = json!({ "cache": folder.display().to_string(), "documents": documents, "objects": objects, "shapes": shapes, "bytes": bytes });
     printer.result(&text, &object);
     Outcome::Good
 }

@@ -140,10 +140,9 @@ fn bytes(render: &Render, printer: &Printer) -> Result<(Vec<u8>, Vec<Option<Meas
         name: task.name().to_owned(),
         path: task.path.clone(),
         no_report: true,
-        measure: false,
-        origins: false,
         deviations: render.heat == Some(Heat::Deviation),
         profiles: vec![Profile::Core],
+        ..Options::default()
     };
     let compiled = document.and_then(|document| compile_profiles(&document, &files, &options));
     let mut compiled = compiled.map_err(|list| {

@@ -66,7 +66,7 @@ pub(super) fn add(made: &Made<'_>, surfaces: &mut Surfaces) -> Result<Vec<Diagno
     let mut chains: Vec<Vec<Kept>> = realized.shapes.iter().map(|_| Vec::new()).collect();
     let mut asked = vec![0; chains.len()];
     for level in &levels {
-        let options = realize::Options { coarser: kept, level: *level };
+        let options = realize::Options { coarser: kept, level: *level, memo: made.memo };
         let made = realize::level(&built.model, &options, realized);
         for (index, coarse) in made.into_iter().enumerate() {
             let finest = &realized.scene.geometries[index];

@@ -30,7 +30,7 @@ type Placed = (Body, DAffine3);
 /// Shapes without volume, and those that cannot be made.
 pub fn colliders(
     model: &Model,
-    options: &Options,
+    options: &Options<'_>,
     shapes: &[ShapeHandle],
     scene: &Scene,
 ) -> Result<Vec<Collider>, Vec<(ShapeHandle, RealizeError)>> {
@@ -86,7 +86,7 @@ fn of_nodes(model: &Model, collider: &model::Collider, made: &Made) -> Vec<Colli
 /// The bodies of a collider, in metres.
 fn body(
     model: &Model,
-    options: &Options,
+    options: &Options<'_>,
     (index, collider): (usize, &model::Collider),
     shapes: &[ShapeHandle],
     scene: &Scene,

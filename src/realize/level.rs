@@ -17,7 +17,7 @@ use crate::scene::Geometry;
 
 /// A level of every geometry of a scene, in their order; `None` for one that cannot be made so coarsely.
 #[must_use]
-pub fn level(model: &Model, options: &Options, finest: &Realized) -> Vec<Option<Geometry>> {
+pub fn level(model: &Model, options: &Options<'_>, finest: &Realized) -> Vec<Option<Geometry>> {
     let maker = Maker::new(model, options);
     let make = |index: usize| {
         let geometry = &finest.scene.geometries[index];

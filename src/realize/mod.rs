@@ -13,9 +13,11 @@ mod extents;
 mod facets;
 mod height;
 mod inherited;
+mod keep;
 mod leaning;
 mod level;
 mod limit;
+mod made_bytes;
 mod material;
 mod morph;
 mod motion;
@@ -24,6 +26,7 @@ mod node;
 mod normal_map;
 mod parameters;
 mod reach;
+mod recipe_hash;
 mod shape;
 mod solid;
 mod source;
@@ -34,6 +37,7 @@ mod vertex_color;
 mod window;
 
 pub use collider::colliders;
+pub use keep::{Keep, Memo};
 pub use level::{level, within_limits};
 pub use normal_map::normal_maps;
 pub use source::{Source, Sources, sources};
@@ -50,12 +54,14 @@ use crate::model::{MaterialHandle, Model, ShapeHandle};
 use crate::scene::Scene;
 
 /// How to realize.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Options {
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options<'a> {
     /// All tolerances are multiplied by this; 0 means 1.
     pub coarser: f64,
     /// How much coarser surfaces are besides.
     pub level: Level,
+    /// Shapes that were made before; they must be of the model that is realized.
+    pub memo: Option<&'a Memo<'a>>,
 }
 
 /// A level of detail. What others are made from (cages, sums of weights) is made as for the finest one.
@@ -290,6 +296,6 @@ pub struct Faces {
 ///
 /// # Errors
 /// Every shape that could not be made, with the reason.
-pub fn scene(model: &Model, options: &Options) -> Result<Realized, Vec<(ShapeHandle, RealizeError)>> {
+pub fn scene(model: &Model, options: &Options<'_>) -> Result<Realized, Vec<(ShapeHandle, RealizeError)>> {
     node::scene(model, options)
 }

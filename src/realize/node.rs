@@ -18,7 +18,10 @@ type Shown = (ShapeHandle, Option<MaterialHandle>);
 /// A shape as triangles with its states.
 type Morphed = (Made, Vec<MorphTarget>);
 
-pub(super) fn scene(model: &Model, options: &Options) -> Result<Realized, Vec<(ShapeHandle, RealizeError)>> {
+pub(super) fn scene(
+    model: &Model,
+    options: &Options<'_>,
+) -> Result<Realized, Vec<(ShapeHandle, RealizeError)>> {
     let mut shown: Vec<Shown> = Vec::new();
     for node in &model.nodes {
         let Some(shape) = node.shape else { continue };
@@ -42,7 +45,7 @@ pub(super) fn scene(model: &Model, options: &Options) -> Result<Realized, Vec<(S
 
 fn make_all(
     model: &Model,
-    options: &Options,
+    options: &Options<'_>,
     shapes: &[ShapeHandle],
     shown: &[Shown],
 ) -> Result<Vec<Morphed>, Vec<(ShapeHandle, RealizeError)>> {

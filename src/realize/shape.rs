@@ -9,7 +9,7 @@ use super::material::{middle, own_or, show_normals, source_of, split_by_element}
 use super::reach::bent;
 use super::source::source_count;
 use super::vertex_color::{blend, color};
-use super::{Faces, Level, Note, Options, RealizeError};
+use super::{Faces, Level, Memo, Note, Options, RealizeError};
 use crate::geometry::mesh;
 use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
 use crate::geometry::mesh::{Mesh, Vertex, VertexIndex, Wire};
@@ -41,6 +41,7 @@ pub(super) struct Maker<'a> {
     pub(super) model: &'a Model,
     coarser: f64,
     level: Level,
+    memo: Option<&'a Memo<'a>>,
     /// How far each shape reaches.
     pub(super) extents: Extents,
     /// Triangles that each shape has at least.
@@ -65,12 +66,13 @@ impl Made {
 }
 
 impl<'a> Maker<'a> {
-    pub(super) fn new(model: &'a Model, options: &Options) -> Self {
+    pub(super) fn new(model: &'a Model, options: &Options<'a>) -> Self {
         let coarser = if options.coarser > 0.0 { options.coarser } else { 1.0 };
         Self {
             model,
             coarser,
             level: options.level,
+            memo: options.memo,
             extents: super::extents::extents(model),
             least: limit::least_triangles(model),
             levels: 0,
@@ -80,6 +82,11 @@ impl<'a> Maker<'a> {
     /// The same, which refines cages at least so often.
     pub(super) fn with_levels(self, levels: u32) -> Self {
         Self { levels, ..self }
+    }
+
+    /// All tolerances are multiplied by this.
+    pub(super) fn coarser(&self) -> f64 {
+        self.coarser
     }
 
     /// What a tolerance is in the end.
@@ -100,7 +107,27 @@ impl<'a> Maker<'a> {
         self.part(handle, inherited, &mut first_source)
     }
 
+    /// A shape as a part of another: kept from before, or made. Its sources count on from the next one.
     pub(super) fn part(
+        &self,
+        handle: ShapeHandle,
+        inherited: Inherited,
+        next_source: &mut u32,
+    ) -> Result<Made, RealizeError> {
+        let make = || {
+            let mut sources = 0;
+            self.part_anew(handle, inherited, &mut sources).map(|made| (made, sources))
+        };
+        let (mut made, sources) = match self.memo {
+            Some(memo) => memo.shape((self, handle), inherited, make)?,
+            None => make()?,
+        };
+        shift_sources(&mut made, *next_source);
+        *next_source += sources;
+        Ok(made)
+    }
+
+    fn part_anew(
         &self,
         handle: ShapeHandle,
         inherited: Inherited,

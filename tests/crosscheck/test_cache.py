@@ -9,13 +9,13 @@ import shutil
 import signal
 import subprocess
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from kiln import Kiln
 
+ROOT = Path(__file__).resolve().parents[2]
 COMMON = '[material.red]\ncolor = "#c03020"\n'
 FOLDED = "[shape.a.mesh]\npoints = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]\nfaces = [[0, 2, 1, 3]]\n"
 
@@ -94,6 +94,136 @@ def test_a_file_that_appears_is_seen(kiln: Kiln) -> None:
     for _ in range(2):
         hits, done = bake(kiln)
         assert (hits, done.returncode) == (0, 1)
+
+
+SOLID = """[parameters]
+width = 1
+[curve.outline.polyline]
+points = [[0, 0], [0.5, 0], [0.6, 1], [0, 1]]
+[shape.turned]
+segments = [64, 8]
+[shape.turned.revolve]
+profile = "outline"
+[shape.cut]
+material = "clay"
+[shape.cut.difference]
+of = ["turned", "hole"]
+[shape.hole]
+segments = [48, 24]
+[shape.hole.sphere]
+radius = 0.4
+center = [0.3, 0.5, 0]
+[shape.other]
+material = "clay"
+[shape.other.union]
+of = ["one", "two"]
+[shape.one]
+segments = [48, 24]
+[shape.one.sphere]
+radius = "= width"
+[shape.two]
+segments = [48, 24]
+[shape.two.sphere]
+radius = 1
+center = [0.7, 0.1, 0.2]
+[material.clay]
+color = "#b5651d"
+"""
+
+
+def shapes(kiln: Kiln, *more: str) -> tuple[int, int]:
+    """Bakes the solid with the cache: how many shapes were found, and how many were made and kept."""
+    done = kiln.run("bake", "solid.toml", "--out", "out", "--cache", "cache", "--format", "json", "--verbose", *more)
+    assert done.returncode == 0, done.stdout + done.stderr
+    (found,) = [json.loads(line)["cache"] for line in done.stdout.splitlines() if '"cache"' in line]
+    assert found["hits"] == 0
+    return found["shapes"]["found"], found["shapes"]["kept"]
+
+
+def test_a_shape_is_made_again_only_when_what_it_depends_on_changed(kiln: Kiln) -> None:
+    def same_as_plain(*more: str) -> None:
+        assert kiln.run("bake", "solid.toml", "--out", "plain", *more).returncode == 0
+        assert outputs(kiln.folder / "out") == outputs(kiln.folder / "plain")
+
+    kiln.write(SOLID, "solid")
+    found, kept = shapes(kiln)
+    assert found == 0
+    assert kept >= 2
+    same_as_plain()
+    # Looks, names of nodes and profiles cut nothing again, nor do a definition before all others and another name.
+    painted = SOLID.replace("#b5651d", "#336699").replace(
+        "[parameters]", "[shape.ball.box]\nsize = [1, 1, 1]\n[parameters]"
+    )
+    painted = painted.replace("hole", "hollow")
+    for text, options in ((painted, ()), (painted, ("--no-report",)), (SOLID, ("--profile", "bevy"))):
+        kiln.write(text, "solid")
+        shutil.rmtree(kiln.folder / "out")
+        shutil.rmtree(kiln.folder / "plain")
+        assert shapes(kiln, *options) == (2, 0)
+        same_as_plain(*options)
+    # A parameter and a curve make what uses them anew; the other solid is found.
+    for text in (SOLID.replace("width = 1", "width = 1.1"), SOLID.replace("0.6, 1", "0.7, 1")):
+        kiln.write(text, "solid")
+        found, kept = shapes(kiln, "--profile", "core")
+        assert found == 1
+        assert kept >= 1
+        same_as_plain("--profile", "core")
+    stats = json.loads(kiln.run("cache", "stats", "--cache", "cache", "--format", "json").stdout)
+    assert stats["shapes"] == len(kept_files(kiln))
+
+
+def kept_files(kiln: Kiln) -> list[Path]:
+    return sorted(path for path in (kiln.folder / "cache" / "shapes").rglob("*") if path.is_file())
+
+
+def test_broken_shapes_are_made_again(kiln: Kiln) -> None:
+    kiln.write(SOLID, "solid")
+    shapes(kiln)
+    right = outputs(kiln.folder / "out")
+    rolls = random.Random(3)
+    for turn in range(6):
+        shutil.rmtree(kiln.folder / "cache" / "manifests")
+        victim = rolls.choice(kept_files(kiln))
+        whole = bytearray(victim.read_bytes())
+        if turn % 2:
+            whole[rolls.randrange(len(whole))] ^= 1 << rolls.randrange(8)
+        victim.write_bytes(whole if turn % 2 else whole[: len(whole) // 2])
+        shutil.rmtree(kiln.folder / "out")
+        shapes(kiln)
+        assert outputs(kiln.folder / "out") == right
+    victim = kept_files(kiln)[0]
+    victim.write_bytes(victim.read_bytes()[:-1])
+    assert kiln.run("cache", "verify", "--cache", "cache").returncode == 1
+    assert not victim.exists()
+
+
+def test_kept_shapes_give_the_bytes_of_a_bake_over_the_gallery(kiln: Kiln) -> None:
+    gallery = str(ROOT / "specs")
+
+    def gallery_of(out: str, *more: str) -> dict[str, bytes]:
+        done = kiln.run("bake", gallery, "--root", str(ROOT), "--out", out, "--quiet", *more, seconds=1200)
+        assert done.returncode == 0, done.stderr
+        return outputs(kiln.folder / out)
+
+    plain = gallery_of("plain")
+    assert gallery_of("cold", "--cache", "cache") == plain
+    assert len(kept_files(kiln)) > 20
+    # Without the manifests every document is baked, of the shapes that are kept.
+    shutil.rmtree(kiln.folder / "cache" / "manifests")
+    assert gallery_of("warm", "--cache", "cache") == plain
+
+
+def test_a_clock_that_jumps_hides_no_change(kiln: Kiln) -> None:
+    kiln.write(SOLID, "solid")
+    file = kiln.folder / "solid.toml"
+    for color in ("#b5651d", "#336699", "#112233"):
+        file.write_text(SOLID.replace("#b5651d", color))
+        # The same size, and a time that does not pass: of a clock far ahead, and of one that was set back.
+        for moment in (4_000_000_000, 1_000):
+            os.utime(file, (moment, moment))
+            kiln.run("bake", "solid.toml", "--out", "out", "--cache", "cache")
+            kiln.run("bake", "solid.toml", "--out", "plain")
+            assert outputs(kiln.folder / "out") == outputs(kiln.folder / "plain")
 
 
 def test_broken_objects_are_baked_again(kiln: Kiln) -> None:

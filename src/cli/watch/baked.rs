@@ -8,6 +8,7 @@ use std::sync::{Arc, OnceLock};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 use super::seen::Seen;
+use crate::cache::Memory;
 use crate::cli::arguments::Watch;
 use crate::cli::baked::line;
 use crate::compile::{Compiled, Options, compile_profiles};
@@ -17,6 +18,7 @@ use crate::language::diagnostic::Diagnostics;
 use crate::language::source::SourceMap;
 use crate::preview::{self, Moment, Stage};
 use crate::project::{Task, Told, reason};
+use crate::realize::Keep;
 
 /// What came of a bake.
 pub(super) struct Bake<'a> {
@@ -35,7 +37,7 @@ pub(super) struct Bake<'a> {
 
 impl<'a> Bake<'a> {
     /// Bakes a document.
-    pub(super) fn of(task: &'a Task, watch: &Watch) -> Self {
+    pub(super) fn of(task: &'a Task, watch: &Watch, memory: &Arc<Memory>) -> Self {
         let mut bake =
             Self { task, seen: None, assets: Vec::new(), diagnostics: None, failure: None, sources: None };
         let seen = match Seen::new(&task.root) {
@@ -45,7 +47,7 @@ impl<'a> Bake<'a> {
                 return bake;
             }
         };
-        if catch_unwind(AssertUnwindSafe(|| bake.document(watch, &seen))).is_err() {
+        if catch_unwind(AssertUnwindSafe(|| bake.document((watch, memory), &seen))).is_err() {
             let message = format!("{}: Kiln failed inside; please report this document as a bug", task.path);
             bake = Self { failure: Some(message), assets: Vec::new(), ..bake };
         }
@@ -53,7 +55,7 @@ impl<'a> Bake<'a> {
         bake
     }
 
-    fn document(&mut self, watch: &Watch, seen: &Seen) {
+    fn document(&mut self, (watch, memory): (&Watch, &Arc<Memory>), seen: &Seen) {
         let task = self.task;
         let document = match Document::load(&task.path, seen) {
             Ok(document) => document,
@@ -74,6 +76,7 @@ impl<'a> Bake<'a> {
                 path: task.path.clone(),
                 profiles: watch.profile.clone(),
                 origins: true,
+                keep: Some(Arc::clone(memory) as Arc<dyn Keep>),
                 ..Options::default()
             };
             compile_profiles(&document, seen, &options)

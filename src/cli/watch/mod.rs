@@ -28,6 +28,7 @@ use super::baked::line;
 use super::output::Printer;
 use super::project::task;
 use super::three::Three;
+use crate::cache::Memory;
 use crate::compile::Compiled;
 use crate::project::{Task, reason, save};
 use answer::Site;
@@ -40,6 +41,9 @@ const MERGE: Duration = Duration::from_millis(30);
 
 /// Errors of files that are still being written are held back for no longer than this.
 const PATIENCE: Duration = Duration::from_millis(300);
+
+/// Bytes of realized shapes that are remembered from bake to bake.
+const REMEMBERED: usize = 256 << 20;
 
 pub(crate) fn run(watch: &Watch, printer: &Printer) -> Outcome {
     let task = match task(&watch.file, watch.root.as_deref()) {
@@ -112,11 +116,12 @@ impl Watcher<'_> {
     /// Bakes, shows, waits for a change, and so on.
     fn follow(&self) -> ! {
         let mut folders = Folders::new();
+        let memory = Arc::new(Memory::new(REMEMBERED));
         // Since when nothing was told because files were still being written.
         let mut silent: Option<Instant> = None;
         loop {
             let started = Instant::now();
-            let bake = Bake::of(self.task, self.watch);
+            let bake = Bake::of(self.task, self.watch, &memory);
             let took = started.elapsed();
             if let Some(message) = folders.follow(bake.paths()) {
                 self.printer.result(&format!("note: {message}"), &json!({ "note": message }));

@@ -49,7 +49,7 @@ type Make<'f> = dyn Fn(&Maker<'_>, ShapeHandle) -> Result<Made, RealizeError> + 
 /// A shape with its states; `made` is what it is by itself.
 pub(super) fn morphed(
     (model, shape): (&Model, ShapeHandle),
-    options: &Options,
+    options: &Options<'_>,
     made: Made,
     make: &Make<'_>,
 ) -> Result<(Made, Vec<MorphTarget>), RealizeError> {
@@ -86,7 +86,7 @@ pub(super) fn morphed(
 fn members<'m>(
     (model, shape): (&'m Model, ShapeHandle),
     morphs: &[&Morph],
-    (options, finer, levels): (&Options, f64, u32),
+    (options, finer, levels): (&Options<'_>, f64, u32),
     made: Option<Made>,
     make: &Make<'_>,
 ) -> Result<Vec<Member<'m>>, RealizeError> {
