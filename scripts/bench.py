@@ -4,9 +4,9 @@
     scripts/bench.py                  vase, sweep and loft on a fixed grid, the vase within 0.1 mm, peak memory,
                                       evaluation of curves, the teapot, a face at equal deviation, evaluation
                                       of surfaces, height maps, booleans, weights by heat, growth,
-                                      a thousand documents, every spec of the gallery
+                                      a thousand documents, glTF files made small, every spec of the gallery
     scripts/bench.py --only vase      one part: vase, sweep, loft, tolerance, memory, curves, teapot, face,
-                                      surfaces, heights, booleans, weights, growth, farm or gallery
+                                      surfaces, heights, booleans, weights, growth, farm, packing or gallery
     scripts/bench.py --large          memory up to an output of 1 GB
     scripts/bench.py --json FILE      the figures as JSON too
     scripts/bench.py --plot FILE      growth as a picture
@@ -30,7 +30,7 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-from peers import booleans, evaluation, farm, gallery, growth, heights, models, motion, specs, surfaces
+from peers import booleans, evaluation, farm, gallery, growth, heights, models, motion, packing, specs, surfaces
 from peers.process import Runs, together
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -54,6 +54,7 @@ PARTS = (
     "weights",
     "growth",
     "farm",
+    "packing",
     "gallery",
 )
 
@@ -125,13 +126,22 @@ def measure(part: str, folder: Path, options: argparse.Namespace) -> Part:
     if part == "weights":
         peer = [str(PYTHON), str(ROOT / "tests" / "crosscheck" / "blender_weights.py")]
         return motion.measure(KILN, peer, folder, options.runs, tell)
-    if part == "growth":
-        return growth.measure(KILN, folder, options.runs, tell)
-    if part == "farm":
-        return farm.measure(KILN, CAD_PYTHON.parent / "ninja", folder, options.runs, tell)
-    if part == "gallery":
-        return gallery.measure(KILN, ROOT / "specs", folder, options.runs, tell)
+    if part in ("growth", "farm", "packing", "gallery"):
+        return of_files(part, folder, options.runs)
     return tolerance(folder) if part == "tolerance" else grid(part, folder, options.runs)
+
+
+def of_files(part: str, folder: Path, runs: int) -> Part:
+    """Large files, many files, and files of other makers."""
+    if part == "growth":
+        return growth.measure(KILN, folder, runs, tell)
+    if part == "farm":
+        return farm.measure(KILN, CAD_PYTHON.parent / "ninja", folder, runs, tell)
+    if part == "packing":
+        programs = PEERS / "node_modules" / ".bin"
+        plain = ROOT / "tests" / "crosscheck" / "plain.mjs"
+        return packing.measure(KILN, (programs, plain), folder, runs, tell)
+    return gallery.measure(KILN, ROOT / "specs", folder, runs, tell)
 
 
 def of_surfaces(part: str, folder: Path, runs: int) -> Part:
@@ -283,6 +293,7 @@ def tables(figures: dict[str, Any]) -> str:
         "weights": weights_table,
         "growth": growth_table,
         "farm": farm_table,
+        "packing": packing_table,
         "gallery": gallery_table,
     }
     blocks += [table(figures[part]["rows"]) for part, table in others.items() if part in figures]
@@ -466,6 +477,32 @@ def farm_table(rows: list[dict[str, Any]]) -> str:
         else [row["work"], "failed", "-", "-"]
         for row in rows
     ]
+    return markdown(head, body)
+
+
+def packing_table(rows: list[dict[str, Any]]) -> str:
+    """Large files of other makers."""
+    head = [
+        "a million triangles",
+        "tool",
+        "ms",
+        "times Kiln",
+        "bytes",
+        "ACMR",
+        "positions",
+        "normals",
+        "UVs",
+    ]
+    body = [
+        [
+            row["input"], row["tool"], thousandths(row["seconds"]), ratio(row["times-kiln"]),
+            count(row["bytes"]), ratio(row["acmr"]), small(row["position-error"]), small(row["normal-error"]),
+            small(row["uv-error"]),
+        ]
+        if row["failure"] is None
+        else [row["input"], row["tool"], "failed", *["-"] * (len(head) - 3)]
+        for row in rows
+    ]  # fmt: skip
     return markdown(head, body)
 
 

@@ -24,6 +24,9 @@ const THRESHOLD: f64 = 1.05;
 /// Triangles that are ordered together: few enough for a processor's cache, and many for the other's.
 const PIECE: usize = 1 << 14;
 
+/// As [`PIECE`], for strips: what follows a border between pieces is told anew, which makes bytes longer.
+const STRIP_PIECE: usize = 1 << 19;
+
 /// Triangles below which one thread orders everything: to wake another takes longer.
 const ONE_THREAD: usize = 100_000;
 
@@ -74,18 +77,25 @@ pub fn order_triangles(triangles: &mut [[VertexIndex; 3]], place: Place<'_>, ord
 
 fn order_run(run: &mut [[VertexIndex; 3]], place: Place<'_>, (order, parallel): (Order, bool)) {
     let count = run.len();
+    let length = match order {
+        Order::Drawing => PIECE,
+        Order::Packing => STRIP_PIECE,
+    };
     let of = |piece: &mut [[VertexIndex; 3]]| match order {
         Order::Drawing => order_piece(piece, place),
         Order::Packing => strip_piece(piece),
     };
-    let misses: u32 =
-        if parallel { run.par_chunks_mut(PIECE).map(of).sum() } else { run.chunks_mut(PIECE).map(of).sum() };
+    let misses: u32 = if parallel {
+        run.par_chunks_mut(length).map(of).sum()
+    } else {
+        run.chunks_mut(length).map(of).sum()
+    };
     let fair = match order {
         Order::Drawing => FAIR,
         Order::Packing => FAIR_STRIPS,
     };
     // Where neighbors do not come together, most are in another piece.
-    if count > PIECE && f64::from(misses) > fair * count as f64 {
+    if count > length && f64::from(misses) > fair * count as f64 {
         of(run);
     }
 }

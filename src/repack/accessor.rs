@@ -66,9 +66,18 @@ impl Elements<'_> {
         })
     }
 
-    /// The first number of an element, as a whole one.
-    pub(super) fn whole(&self, place: usize) -> u32 {
-        little(&self.at(place)[..size(self.component)])
+    /// The first number of every element, as whole ones.
+    pub(super) fn wholes(&self) -> Vec<u32> {
+        let dense = &self.bytes[self.start..][..self.count * self.size];
+        match (self.component, self.stride) {
+            (ComponentType::U32, 4) => {
+                dense.as_chunks().0.iter().map(|word| u32::from_le_bytes(*word)).collect()
+            }
+            (ComponentType::U16, 2) => {
+                dense.as_chunks().0.iter().map(|word| u16::from_le_bytes(*word).into()).collect()
+            }
+            _ => (0..self.count).map(|place| little(&self.at(place)[..size(self.component)])).collect(),
+        }
     }
 
     /// Whether the numbers are floats.

@@ -406,13 +406,23 @@ fn write_sparse(column: &Column, count: usize, told: &Object, output: &mut Outpu
 fn bounds(column: &Column) -> (Value, Value) {
     let size = crate::import::gltf::size(column.component);
     let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for row in column.rows.chunks_exact(column.stride) {
+    let mut take = |numbers: [f64; 3]| {
         for axis in 0..3 {
-            let bytes = &row[axis * size..(axis + 1) * size];
-            let number = f64::from(crate::import::gltf::number(column.component, false, bytes));
-            min[axis] = min[axis].min(number);
-            max[axis] = max[axis].max(number);
+            min[axis] = min[axis].min(numbers[axis]);
+            max[axis] = max[axis].max(numbers[axis]);
         }
+    };
+    for row in column.rows.chunks_exact(column.stride) {
+        take(match column.component {
+            ComponentType::U16 => {
+                let words = row.as_chunks::<2>().0;
+                [words[0], words[1], words[2]].map(|word| u16::from_le_bytes(word).into())
+            }
+            _ => [0, 1, 2].map(|axis| {
+                let bytes = &row[axis * size..(axis + 1) * size];
+                crate::import::gltf::number(column.component, false, bytes).into()
+            }),
+        });
     }
     let told = |bound: [f64; 3]| Value::Array(bound.map(number_of).to_vec());
     (told(min), told(max))

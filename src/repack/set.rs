@@ -265,7 +265,7 @@ fn drawn(source: &Source<'_>, member: &Member, count: usize) -> Result<Drawn, Fa
 }
 
 fn indices(own: &Elements<'_>, count: usize) -> Result<Vec<u32>, String> {
-    let all: Vec<u32> = (0..own.count).map(|at| own.whole(at)).collect();
+    let all = own.wholes();
     match all.iter().position(|vertex| *vertex as usize >= count) {
         None => Ok(all),
         Some(place) => {

@@ -349,6 +349,36 @@ def test_samples_look_and_move_the_same(
 
 
 @pytest.mark.cases
+@pytest.mark.parametrize(
+    ("name", "clip", "times"),
+    [
+        ("Fox.glb", "Run", "0,0.25,0.5"),
+        ("CesiumMan.glb", "", "0"),
+        ("BoxTexcoords/boxTexcoords.gltf", "", "0"),
+        ("monkey.glb", "", "0"),
+    ],
+)
+def test_blender_shows_the_same(kiln: Kiln, cases: Path, name: str, clip: str, times: str) -> None:
+    """What its own importer makes of whole numbers, skins and packed keys, vertex by vertex."""
+    source = cases / "gltf" / name
+    made = optimize(kiln, source, "--profile", "web")
+    out = kiln.folder / "played.npz"
+    line = [sys.executable, str(HERE / "blender_played.py"), str(out), clip, times, str(source)]
+    done = subprocess.run([*line, str(kiln.folder / "plain.glb")], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-2000:]
+    errors = made.report["errors"]
+    found = np.load(out)
+    for time in times.split(","):
+        before, after = found[f"0/{time}"], found[f"1/{time}"]
+        assert len(after) > 0
+        size = float(np.ptp(before, axis=0).max())
+        bound = errors["positions"] + 12 * math.radians(errors["rotations"]) * size + 16 * errors["weights"] * size
+        bound += 12 * errors["translations"] + 1e-5 * size
+        for one, other in ((before, after), (after, before)):
+            assert cKDTree(one).query(other)[0].max() <= bound
+
+
+@pytest.mark.cases
 @pytest.mark.parametrize("name", ["CesiumMan.glb", "AnimatedMorphCube/AnimatedMorphCube.gltf", "monkey.glb"])
 def test_what_is_packed_already_is_packed_again(kiln: Kiln, cases: Path, name: str) -> None:
     """From either version of the compression, and to none, without a further error of positions."""
