@@ -1,6 +1,7 @@
 //! The pipeline, one line a stage.
 
 mod assertion;
+mod baked;
 mod collider;
 mod engine;
 mod file;
@@ -193,6 +194,7 @@ impl Made<'_> {
     fn surfaces(&self, profile: Profile) -> Result<(Surfaces, Vec<Diagnostic>), Vec<Diagnostic>> {
         let (mut surfaces, mut found) = self.finest(profile)?;
         found.extend(lod::add(self, &mut surfaces)?);
+        baked::bake(self, &mut surfaces)?;
         Ok((surfaces, found))
     }
 
@@ -538,6 +540,7 @@ fn unwritable(error: &SceneError, built: &Built) -> Diagnostic {
         SceneError::Animation(..) | SceneError::Skin(..) | SceneError::Collider(..) => {
             (Code::NotFinite, None)
         }
+        SceneError::Lightmap(name) => (Code::NoLightmap, named(name)),
         SceneError::Morph(name, ..) => (Code::NotFinite, named(name)),
         SceneError::NotFinite(name) | SceneError::NotUnit(name, _) => (Code::NotFinite, named(name)),
         _ => (Code::NothingToShow, None),

@@ -9,7 +9,10 @@ use crate::geometry::mesh;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, Count, Shape as Kind, ShapeDefinition, ShapeReference};
-use crate::model::{Density, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode, VertexColor};
+use crate::model::{
+    Density, LightmapOptions, Occlusion, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode,
+    VertexColor,
+};
 
 impl Builder<'_> {
     /// The shape of a name, built at its first use.
@@ -68,7 +71,27 @@ impl Builder<'_> {
             }
             None => None,
         };
+        if let (Some(map), spec::Uv::None) = (&written.lightmap, written.uv.value) {
+            let message = "`lightmap` and `uv = \"none\"` exclude each other: second texture coordinates need first ones";
+            self.report(
+                Diagnostic::error(Code::Conflict, message)
+                    .at(map.span, "second texture coordinates")
+                    .also(written.uv.span, "no first ones")
+                    .help("leave one of them out"),
+            );
+            return None;
+        }
         Some(ShapeOptions {
+            lightmap: written
+                .lightmap
+                .as_ref()
+                .map(|map| LightmapOptions { size: map.value.size.value, padding: map.value.padding.value }),
+            occlusion: written.occlusion.as_ref().map(|asked| Occlusion {
+                samples: asked.value.samples.value,
+                distance: asked.value.distance.as_ref().map(|distance| distance.value),
+                strength: asked.value.strength.value,
+                seed: asked.value.seed.value,
+            }),
             vertex_color,
             tolerance: written.tolerance.map(|tolerance| tolerance.value),
             density: written.segments.map(|grid| Density { u: grid.u, v: grid.v }),

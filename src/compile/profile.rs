@@ -27,6 +27,7 @@ pub(crate) fn profile_of(name: OutputProfile) -> Profile {
         OutputProfile::Core => Profile::Core,
         OutputProfile::Quantized => Profile::Quantized,
         OutputProfile::Web => Profile::Web,
+        OutputProfile::Verify => Profile::Verify,
         OutputProfile::Bevy => Profile::Bevy,
         OutputProfile::Godot => Profile::Godot,
         OutputProfile::Unreal => Profile::Unreal,

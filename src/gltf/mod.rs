@@ -11,6 +11,7 @@ mod collider;
 mod color;
 mod duplicate;
 mod lines;
+mod manifold;
 mod material;
 mod morph;
 mod motion;
@@ -19,6 +20,7 @@ mod profile;
 mod read;
 mod read_morph;
 mod read_motion;
+mod read_second;
 mod view;
 mod write;
 

@@ -15,6 +15,8 @@ pub enum Profile {
     /// As quantized, on the coarsest grid that the tolerance allows, and compressed; needs `KHR_mesh_quantization` and
     /// `EXT_meshopt_compression`.
     Web,
+    /// As core; closed meshes say which of their vertices are one, by `EXT_mesh_manifold`, which is not required.
+    Verify,
     /// As core: Bevy refuses files that require an extension for whole numbers.
     Bevy,
     /// As core, for the same reason; bodies have the names that Godot makes bodies of.
@@ -33,10 +35,11 @@ pub enum Profile {
 
 impl Profile {
     /// All of them, by name.
-    pub const NAMED: [(&'static str, Self); 10] = [
+    pub const NAMED: [(&'static str, Self); 11] = [
         ("core", Self::Core),
         ("quantized", Self::Quantized),
         ("web", Self::Web),
+        ("verify", Self::Verify),
         ("bevy", Self::Bevy),
         ("godot", Self::Godot),
         ("unreal", Self::Unreal),
@@ -53,6 +56,7 @@ impl Profile {
             Self::Core => "core",
             Self::Quantized => "quantized",
             Self::Web => "web",
+            Self::Verify => "verify",
             Self::Bevy => "bevy",
             Self::Godot => "godot",
             Self::Unreal => "unreal",
@@ -73,7 +77,7 @@ impl Profile {
     #[must_use]
     pub const fn engine(self) -> Option<&'static str> {
         Some(match self {
-            Self::Core | Self::Quantized | Self::Web => return None,
+            Self::Core | Self::Quantized | Self::Web | Self::Verify => return None,
             Self::Bevy => "Bevy",
             Self::Godot => "Godot",
             Self::Unreal => "Unreal",
@@ -88,6 +92,12 @@ impl Profile {
     #[must_use]
     pub const fn is_quantized(self) -> bool {
         matches!(self, Self::Quantized | Self::Web | Self::Unity | Self::Three | Self::Babylon)
+    }
+
+    /// Whether closed meshes say which of their vertices are one.
+    #[must_use]
+    pub const fn tells_manifolds(self) -> bool {
+        matches!(self, Self::Verify)
     }
 
     /// Whether buffer views are compressed.

@@ -15,6 +15,7 @@ use thiserror::Error;
 
 use super::carrier::{ReadLevels, drop_carriers, read_levels};
 use super::color::{ReadColors, read_colors};
+use super::read_second::read_second;
 use crate::geometry::mesh;
 use crate::geometry::number::size;
 use crate::scene::Grid;
@@ -52,6 +53,8 @@ pub struct Geometry<'a> {
     pub lines: Lines,
     /// The range of its colors, where it has some.
     pub colors: Option<ReadColors>,
+    /// For each vertex its second texture coordinates, where all primitives have them.
+    pub second: Option<Vec<[f32; 2]>>,
 }
 
 /// Lines of one mesh.
@@ -247,12 +250,20 @@ fn geometry<'a>(data: Data<'_, 'a>, mesh: usize) -> Result<Geometry<'a>, ReadErr
         });
         primitives.push(Primitive { base, vertices: own, indices });
     }
+    let second = read_second(root, binary, (mesh, vertices))?;
     let positions = gathered_positions(data, &clouds);
     let missing = |index: u32| ReadError::Vertex(mesh, index);
     let indices = gathered_indices(binary, &primitives).map_err(missing)?;
     match indices.greatest().filter(|index| *index >= vertices) {
         Some(index) => Err(missing(index)),
-        None => Ok(Geometry { positions, indices, parts, lines, colors: read_colors(root, binary, mesh)? }),
+        None => Ok(Geometry {
+            positions,
+            indices,
+            parts,
+            lines,
+            colors: read_colors(root, binary, mesh)?,
+            second,
+        }),
     }
 }
 

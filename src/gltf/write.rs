@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec4;
+use glam::{DVec2, DVec4};
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::scene::UnitQuaternion;
@@ -14,7 +14,7 @@ use super::buffer::{Binary, Content, Elements, at, index_accessors, index_width}
 use super::color::colors;
 use super::position::positions;
 use super::profile::Profile;
-use super::{carrier, collider, duplicate, lines, material, morph, motion, view};
+use super::{carrier, collider, duplicate, lines, manifold, material, morph, motion, view};
 use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
 use crate::geometry::number::{floor_count, size};
@@ -141,6 +141,9 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
     motion::animations(&mut writer.root, &mut writer.binary, scene, &bearers);
     writer.nodes(checked, &carriers);
     duplicate::merge_accessors(&mut writer.root);
+    if profile.tells_manifolds() {
+        manifold::mark(&mut writer.root, &mut writer.binary, scene);
+    }
     let animated = |animation: &crate::scene::Animation| WrittenAnimation {
         name: animation.name.clone(),
         bound: animation.bound,
@@ -198,7 +201,7 @@ fn binary_size(checked: Checked<'_>) -> usize {
     let scene = checked.scene();
     let geometry = |geometry: &Geometry| {
         let tangent = if geometry.tangents.is_some() { 16 } else { 0 };
-        let uv = if geometry.uv { 8 } else { 0 };
+        let uv = if geometry.uv { 8 } else { 0 } + if geometry.lightmap.is_some() { 8 } else { 0 };
         let vertices = geometry.mesh.vertices.len();
         let points = geometry.wire.points.len();
         let triangles = geometry.mesh.triangles.len() * 3 * index_width(vertices);
@@ -230,6 +233,7 @@ struct Shared {
     normal: Index<Accessor>,
     tangent: Option<Index<Accessor>>,
     uv: Option<Index<Accessor>>,
+    lightmap: Option<Index<Accessor>>,
     color: Option<Index<Accessor>>,
     carried: Option<motion::Carried>,
     targets: Vec<gltf::json::mesh::MorphTarget>,
@@ -258,7 +262,14 @@ impl Writer {
             let wide = tangents.iter().map(|tangent| glam::Vec4::from_array(*tangent).as_dvec4());
             directions.write(root, binary, Type::Vec4, wide)
         });
-        let uv = geometry.uv.then(|| uvs(root, binary, mesh, self.small));
+        let first: Vec<DVec2> =
+            if geometry.uv { mesh.vertices.iter().map(|vertex| vertex.uv).collect() } else { Vec::new() };
+        let uv = geometry.uv.then(|| uvs(root, binary, &first, self.small));
+        let lightmap = geometry.lightmap.as_ref().map(|lightmap| {
+            let second: Vec<DVec2> =
+                lightmap.places.iter().map(|place| DVec2::from_array(place.map(f64::from))).collect();
+            uvs(root, binary, &second, self.small)
+        });
         let shades = mesh.vertices.iter().map(|vertex| vertex.color);
         let color = geometry.colored.then(|| colors(root, binary, shades, self.small));
         let carried = motion::carried(root, binary, geometry);
@@ -267,7 +278,7 @@ impl Writer {
         let counts = ends.zip(&mesh.runs).map(|(start, run)| (run.end - start) as usize * 3);
         let all = mesh.triangles.iter().flatten().map(|vertex| vertex.0);
         let indices = index_accessors(root, binary, all, (mesh.vertices.len(), false), counts);
-        Shared { position, normal, tangent, uv, color, carried, targets, indices }
+        Shared { position, normal, tangent, uv, lightmap, color, carried, targets, indices }
     }
 
     fn mesh(
@@ -299,6 +310,9 @@ impl Writer {
             }
             if let Some(uv) = shared.uv {
                 attributes.insert(Valid::Valid(Semantic::TexCoords(0)), uv);
+            }
+            if let Some(lightmap) = shared.lightmap {
+                attributes.insert(Valid::Valid(Semantic::TexCoords(1)), lightmap);
             }
             if let Some(color) = shared.color {
                 attributes.insert(Valid::Valid(Semantic::Colors(0)), color);
@@ -503,29 +517,28 @@ impl Directions {
 
 /// Texture coordinates: floats, or 16 bits where all lie in the unit square. Floats that are compressed have 16 bits of the
 /// power of two above the greatest.
-fn uvs(root: &mut Root, binary: &mut Binary, mesh: &mesh::Mesh, small: bool) -> Index<Accessor> {
-    let count = mesh.vertices.len();
-    let inside = |vertex: &mesh::Vertex| vertex.uv.min_element() >= 0.0 && vertex.uv.max_element() <= 1.0;
-    if !(small && mesh.vertices.iter().all(inside)) {
+fn uvs(root: &mut Root, binary: &mut Binary, all: &[DVec2], small: bool) -> Index<Accessor> {
+    let count = all.len();
+    let inside = |uv: &DVec2| uv.min_element() >= 0.0 && uv.max_element() <= 1.0;
+    if !(small && all.iter().all(inside)) {
         let floats = Elements { component: ComponentType::F32, shape: Type::Vec2, count };
         if binary.is_compressed() {
-            let all: Vec<f64> = mesh.vertices.iter().flat_map(|vertex| vertex.uv.to_array()).collect();
+            let all: Vec<f64> = all.iter().flat_map(DVec2::to_array).collect();
             return binary.attribute(root, floats, Content::Exponential { stride: 8 }, |bytes| {
                 exponential(&all).iter().for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
             });
         }
         return binary.attribute(root, floats, Content::Attributes { stride: 8 }, |bytes| {
-            for vertex in &mesh.vertices {
-                put(bytes, vertex.uv.as_vec2().to_array());
+            for uv in all {
+                put(bytes, uv.as_vec2().to_array());
             }
         });
     }
     let elements = Elements { component: ComponentType::U16, shape: Type::Vec2, count };
     let made = binary.attribute(root, elements, Content::Attributes { stride: 4 }, |bytes| {
-        for vertex in &mesh.vertices {
+        for uv in all {
             let share = |part: f64| u16::try_from(floor_count((part * 65535.0).round())).unwrap_or(u16::MAX);
-            bytes
-                .extend_from_slice(vertex.uv.to_array().map(|part| share(part).to_le_bytes()).as_flattened());
+            bytes.extend_from_slice(uv.to_array().map(|part| share(part).to_le_bytes()).as_flattened());
         }
     });
     root.accessors[made.value()].normalized = true;

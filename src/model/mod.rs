@@ -26,7 +26,9 @@ pub use motion::{
     Clip, ClipTrack, Morph, NamedSkeleton, ReachTask, Skin, Socket, SocketHandle, Space, State, Target,
     WeightRule,
 };
-pub use shape::{Density, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode};
+pub use shape::{
+    Density, LightmapOptions, Occlusion, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode,
+};
 pub use solid::{Hollow, KeptSide, PlaneCut, SolidOperation, SolidRecipe};
 pub use subdivide::SubdivisionRecipe;
 pub use vertex_color::{ColorLaw, VertexColor};

@@ -120,6 +120,10 @@ pub struct ShapeOptions {
     pub uv_scale: DVec2,
     /// Colors of its vertices.
     pub vertex_color: Option<VertexColor>,
+    /// Second texture coordinates, if it has some.
+    pub lightmap: Option<LightmapOptions>,
+    /// What its own parts hide of the sky darkens the colors of its vertices.
+    pub occlusion: Option<Occlusion>,
     /// Its material.
     pub material: Option<MaterialHandle>,
     /// Scale, rotation and place, applied to the finished shape.
@@ -137,8 +141,32 @@ impl ShapeOptions {
         uv_scale: DVec2::ONE,
         material: None,
         vertex_color: None,
+        lightmap: None,
+        occlusion: None,
         placement: DAffine3::IDENTITY,
     };
+}
+
+/// For what picture second texture coordinates are laid out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LightmapOptions {
+    /// Texels of a side.
+    pub size: u32,
+    /// Texels around each piece.
+    pub padding: u32,
+}
+
+/// How the sky over a vertex is asked, and what that does to its color.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Occlusion {
+    /// Directions for each vertex.
+    pub samples: u32,
+    /// How far things hide, in the document's unit; `None` for all of them.
+    pub distance: Option<f64>,
+    /// How dark a vertex is whose whole sky is hidden: 1 is black.
+    pub strength: f64,
+    /// Turns the directions.
+    pub seed: u32,
 }
 
 /// Steps of a fixed grid.

@@ -12,6 +12,9 @@ pub(super) fn compact(geometry: &mut Geometry) {
         keep(&mut target.normals, vertices.as_deref());
         keep(&mut target.points, points.as_deref());
     }
+    if let Some(lightmap) = &mut geometry.lightmap {
+        keep(&mut lightmap.places, vertices.as_deref());
+    }
     if let Some(influences) = &mut geometry.influences {
         keep(influences, points.as_deref());
     }

@@ -162,8 +162,8 @@ fn join_points(geometry: &mut Geometry) {
     mesh.points = welded.points;
 }
 
-/// What is written of a vertex: its point, and the bits of its normal, texture coordinates and color.
-type Alike = (u32, [i8; 3], [u64; 2], [u8; 4]);
+/// What is written of a vertex: its point, and the bits of its normal, texture coordinates, color and second coordinates.
+type Alike = (u32, [i8; 3], [u64; 2], [u8; 4], [u32; 2]);
 
 /// Vertices that will be written alike become one.
 fn join_vertices(geometry: &mut Geometry) {
@@ -171,24 +171,33 @@ fn join_vertices(geometry: &mut Geometry) {
     // Only looked up, never walked.
     let mut known: HashMap<Alike, u32> = HashMap::with_capacity(mesh.vertices.len());
     let mut kept: Vec<Vertex> = Vec::with_capacity(mesh.vertices.len());
+    let mut second: Vec<[f32; 2]> = Vec::new();
+    let laid = geometry.lightmap.as_ref().map(|lightmap| lightmap.places.as_slice());
     let places: Vec<u32> = mesh
         .vertices
         .iter()
-        .map(|vertex| {
+        .enumerate()
+        .map(|(number, vertex)| {
+            let own = laid.map(|places| places[number]);
             let key = (
                 vertex.point.0,
                 vertex.normal.to_array().map(signed_byte),
                 vertex.uv.to_array().map(|part| (part + 0.0).to_bits()),
                 vertex.color.0.map(share_byte),
+                own.unwrap_or_default().map(f32::to_bits),
             );
             *known.entry(key).or_insert_with(|| {
                 kept.push(*vertex);
+                second.extend(own);
                 mesh::index(kept.len() - 1)
             })
         })
         .collect();
     if kept.len() < mesh.vertices.len() {
         mesh.vertices = kept;
+        if let Some(lightmap) = &mut geometry.lightmap {
+            lightmap.places = second;
+        }
         for vertex in mesh.triangles.iter_mut().flatten() {
             *vertex = VertexIndex(places[vertex.subscript()]);
         }

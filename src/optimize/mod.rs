@@ -4,6 +4,7 @@ mod band;
 mod compact;
 mod decimate;
 mod grid;
+mod lightmap;
 mod order;
 mod tangent;
 
@@ -11,6 +12,7 @@ use crate::scene::Scene;
 
 pub use decimate::decimated;
 pub use grid::{GRID_SHARE, MOST_GRID_SHARE, TooCoarse, grid_share};
+pub use lightmap::lay_out;
 pub use order::{Order, Place, order_triangles};
 
 /// What positions are rounded to; a grid with the share of the tolerance that it may take.

@@ -280,6 +280,9 @@ fn order_vertices(geometry: &mut Geometry) {
     if let Some(tangents) = &mut geometry.tangents {
         *tangents = order.iter().map(|vertex| tangents[*vertex as usize]).collect();
     }
+    if let Some(lightmap) = &mut geometry.lightmap {
+        rearrange(&mut lightmap.places, order.clone());
+    }
     for target in &mut geometry.targets {
         if let Some(tangents) = &mut target.tangents {
             *tangents = order.iter().map(|vertex| tangents[*vertex as usize]).collect();
@@ -354,6 +357,7 @@ mod tests {
             uv: true,
             colored: false,
             tangents: Some(tangents),
+            lightmap: None,
             influences: None,
             targets: Vec::new(),
             deviation: Deviation { bound: 0.0, evidence: Evidence::Exact },

@@ -65,6 +65,9 @@ fn add_tangents(geometry: &mut Geometry) {
         };
         target.tangents = Some(first.iter().map(along).collect());
     }
+    if let Some(lightmap) = &mut geometry.lightmap {
+        lightmap.places = first.iter().map(|(_, from)| lightmap.places[*from as usize]).collect();
+    }
     geometry.tangents =
         Some(tangents.into_iter().map(|tangent| tangent.unwrap_or([1.0, 0.0, 0.0, 1.0])).collect());
 }

@@ -1,4 +1,4 @@
-//! The one adapter to `meshopt`, whose functions trust their input.
+//! The one adapter to `meshopt`, whose functions trust their input, and that to `uvunwrap`.
 //!
 //! Promise: every index, count and stride is checked before it is handed over, so that no input of these functions can
 //! read or write beyond its arrays; a result depends on the input alone. Where bytes of a file depend on it, only what
@@ -13,6 +13,7 @@ mod order;
 mod simplify;
 mod tangent;
 mod unpack;
+mod unwrap;
 
 pub use codec::{
     Codec, decode_attributes, decode_sequence, decode_triangles, encode_attributes, encode_sequence,
@@ -25,6 +26,7 @@ pub use order::{order_for_cache, order_for_strips};
 pub use simplify::{Attributes, simplified};
 pub use tangent::corner_tangents;
 pub use unpack::{EXTENSION, EXTENSIONS, MOST_RATIO, UnpackError, decoded, stored_lengths, unpacked};
+pub use unwrap::{Unwrapped, unwrapped};
 
 /// Whether all indices are below a count, and make whole triangles.
 fn whole_triangles(indices: &[u32], vertices: usize) -> bool {

@@ -39,6 +39,7 @@ pub fn level(model: &Model, options: &Options<'_>, finest: &Realized) -> Vec<Opt
             mesh: made.mesh,
             wire: made.wire,
             tangents: None,
+            lightmap: None,
             influences,
             targets: Vec::new(),
         })

@@ -120,6 +120,7 @@ fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Mo
             mesh: made.mesh,
             wire: made.wire,
             tangents: None,
+            lightmap: None,
             influences: None,
             targets,
         });

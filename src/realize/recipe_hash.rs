@@ -156,6 +156,9 @@ fn own(recipe: &Recipe, options: &ShapeOptions) -> Hash {
         vertex_color,
         material: _,
         placement,
+        // Both are baked into what has been made.
+        lightmap: _,
+        occlusion: _,
     } = options;
     let mut feed = Feed::new();
     feed.add(&(tolerance, density, smoothing, crease_angle, uv, uv_scale)).add(&(vertex_color, placement));

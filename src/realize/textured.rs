@@ -6,6 +6,8 @@ use crate::model::{Displacement, MaterialHandle, Model, Recipe, ShapeHandle, UvM
 pub(super) fn wants_uv(model: &Model, handle: ShapeHandle, overrides: &[Option<MaterialHandle>]) -> bool {
     let shape = model.shape(handle);
     match shape.options.uv {
+        // A second set of coordinates is no second without a first.
+        _ if shape.options.lightmap.is_some() => true,
         UvMode::Always => true,
         UvMode::None => false,
         UvMode::Auto => {

@@ -11,6 +11,7 @@ pub mod facts;
 mod heights;
 mod joints;
 mod levels;
+mod lightmaps;
 mod morphs;
 mod motion;
 mod perturbed;
@@ -24,6 +25,7 @@ pub use deviation::{deviation_maps, measure_deviation};
 pub use heights::HeightFacts;
 pub use joints::JointFacts;
 pub use levels::{LevelFacts, LevelOrigin};
+pub use lightmaps::LightmapFacts;
 pub use morphs::MorphFacts;
 pub use motion::{ClipFacts, PoseFacts, PosedVertex, ReachFacts, ReachFrame, SkinFacts};
 pub use perturbed::PerturbedFacts;
@@ -174,6 +176,9 @@ pub struct ShapeFacts {
     /// The colors of its vertices, where it has some.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub colors: Option<ColorFacts>,
+    /// Its second texture coordinates.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lightmap: Option<LightmapFacts>,
     /// Its lines.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lines: Option<LineFacts>,
@@ -349,6 +354,7 @@ fn shape_facts(
     Ok(ShapeFacts {
         primitives: geometry.parts.len() + geometry.lines.parts.len(),
         colors: geometry.colors.map(|colors| ColorFacts { min: colors.min, max: colors.max }),
+        lightmap: model.shape(handle).options.lightmap.and_then(|asked| lightmaps::lightmap(geometry, asked)),
         lines,
         deviation: DeviationFacts {
             tolerance: known.tolerance,

@@ -53,6 +53,9 @@ pub enum SceneError {
     /// A color of a vertex is none.
     #[error("shape `{0}` has a vertex color whose parts are not from 0 to 1")]
     Color(String),
+    /// Second texture coordinates are not one for each vertex, or leave the unit square.
+    #[error("shape `{0}` has second texture coordinates that leave the unit square")]
+    Lightmap(String),
     /// A position is not on the grid of the scene.
     #[error("shape `{0}` has a coordinate that is not on the grid of the model")]
     OffGrid(String),
@@ -204,6 +207,7 @@ fn check_geometry(geometry: &Geometry) -> Result<(), SceneError> {
         return Err(SceneError::NoArea(name()));
     }
     check_runs(geometry)?;
+    check_lightmap(geometry)?;
     check_tangents(geometry)
 }
 
@@ -254,6 +258,17 @@ fn check_runs(geometry: &Geometry) -> Result<(), SceneError> {
     let increasing = runs.windows(2).all(|pair| pair[0].end < pair[1].end);
     let covers = runs.last().is_some_and(|run| run.end as usize == geometry.mesh.triangles.len());
     if increasing && covers { Ok(()) } else { Err(SceneError::Runs(geometry.name.clone())) }
+}
+
+fn check_lightmap(geometry: &Geometry) -> Result<(), SceneError> {
+    let Some(lightmap) = &geometry.lightmap else { return Ok(()) };
+    let inside = |place: &[f32; 2]| place.iter().all(|part| (0.0..=1.0).contains(part));
+    let whole = lightmap.places.len() == geometry.mesh.vertices.len() && geometry.uv;
+    if whole && lightmap.places.iter().all(inside) {
+        Ok(())
+    } else {
+        Err(SceneError::Lightmap(geometry.name.clone()))
+    }
 }
 
 fn check_tangents(geometry: &Geometry) -> Result<(), SceneError> {

@@ -89,6 +89,8 @@ pub struct Geometry {
     pub colored: bool,
     /// For each vertex a tangent and the sign of the bitangent, where any material has a normal texture.
     pub tangents: Option<Vec<[f32; 4]>>,
+    /// Second texture coordinates, by which no two places share a place of a picture.
+    pub lightmap: Option<Lightmap>,
     /// For each point of the mesh the joints that carry it, as indices of the skin's joints.
     pub influences: Option<Vec<Influences>>,
     /// States that weights bring its vertices to.
@@ -97,6 +99,17 @@ pub struct Geometry {
     pub deviation: Deviation,
     /// Distance that was asked for, metres; `None` where a fixed grid or no surface made the mesh.
     pub tolerance: Option<f64>,
+}
+
+/// Second texture coordinates, for a square picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lightmap {
+    /// Texels of a side.
+    pub size: u32,
+    /// Pieces that lie apart from each other.
+    pub charts: u32,
+    /// For each vertex its place, from 0 to 1; v grows downwards.
+    pub places: Vec<[f32; 2]>,
 }
 
 /// How levels of detail stand in a file.

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 import trimesh
+
 from checks.document import Document
 
 if TYPE_CHECKING:
     from kiln import Kiln
 
 SHAPES = {
-    "ring": '[shape.a.torus]\nradius = 0.5\ntube-radius = 0.12\n',
+    "ring": "[shape.a.torus]\nradius = 0.5\ntube-radius = 0.12\n",
     "bowl": (
         "[shape.a.revolve]\nprofile = { polyline = { points = "
         "[[0, 0], [0.3, 0], [0.35, 0.3], [0.33, 0.3], [0.28, 0.02], [0, 0.02]] } }\n"
@@ -37,7 +38,7 @@ def hulls(path: Any) -> list[trimesh.Trimesh]:
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("rest", ["", "vertices = 12\nparts = 8\nconcavity = 0.1\n"])
 def test_parts_are_convex_and_cover(kiln: Kiln, name: str, rest: str) -> None:
-    """Every part is convex and closed, every vertex lies in one, and nothing reaches further out than the report says."""
+    """Every part is convex and closed, every vertex lies in one, and nothing reaches further out than is told."""
     asset = kiln.bake("tolerance = 0.004\n" + SHAPES[name] + COLLIDER + rest)
     facts = asset.report["colliders"]["c"]
     parts = hulls(asset.path)
@@ -52,7 +53,9 @@ def test_parts_are_convex_and_cover(kiln: Kiln, name: str, rest: str) -> None:
         assert above.max() < 2e-5
         assert len(part.vertices) <= (12 if rest else 64)
     away = [
-        (mesh.vertices @ part.face_normals.T - np.einsum("ij,ij->i", part.face_normals, part.triangles[:, 0])).max(axis=1)
+        (mesh.vertices @ part.face_normals.T - np.einsum("ij,ij->i", part.face_normals, part.triangles[:, 0])).max(
+            axis=1
+        )
         for part in parts
     ]
     assert np.min(away, axis=0).max() < 2e-5

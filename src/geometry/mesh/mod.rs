@@ -17,6 +17,8 @@ pub mod distance;
 pub mod laplacian;
 pub mod nearest;
 mod normals;
+pub mod occlusion;
+pub mod overlap;
 pub mod platonic;
 pub mod polygon;
 pub mod polygon_facts;

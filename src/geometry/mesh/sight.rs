@@ -32,7 +32,7 @@ impl<'a> Sight<'a> {
         self.tree.visit_along(start, to, |triangle| {
             let corners = self.triangles[triangle as usize];
             let blocks = !corners.contains(&from)
-                && crosses(corners.map(|corner| self.points[corner as usize]), start, to - start);
+                && crosses(corners.map(|corner| self.points[corner as usize]), start, to - start, ENDS);
             seen = seen && !blocks;
             seen
         });
@@ -40,10 +40,24 @@ impl<'a> Sight<'a> {
     }
 }
 
-/// Whether a line meets a triangle away from its ends.
+impl Sight<'_> {
+    /// Whether nothing lies between two places that are not on the surface.
+    #[must_use]
+    pub fn is_free(&self, from: DVec3, to: DVec3) -> bool {
+        let mut free = true;
+        self.tree.visit_along(from, to, |triangle| {
+            let corners = self.triangles[triangle as usize].map(|corner| self.points[corner as usize]);
+            free = !crosses(corners, from, to - from, 0.0);
+            free
+        });
+        free
+    }
+}
+
+/// Whether a line meets a triangle away from its ends, by so much of its length.
 ///
 /// Source: T. Möller, B. Trumbore, Fast, minimum storage ray/triangle intersection, 1997.
-fn crosses([a, b, c]: [DVec3; 3], start: DVec3, along: DVec3) -> bool {
+fn crosses([a, b, c]: [DVec3; 3], start: DVec3, along: DVec3, ends: f64) -> bool {
     /// Shares of sides that rounding may add.
     const ROUNDING: f64 = 1e-12;
     let (ab, ac) = (b - a, c - a);
@@ -57,7 +71,7 @@ fn crosses([a, b, c]: [DVec3; 3], start: DVec3, along: DVec3) -> bool {
     let over = from.cross(ab);
     let v = along.dot(over) / determinant;
     let t = ac.dot(over) / determinant;
-    u >= -ROUNDING && v >= -ROUNDING && u + v <= 1.0 + ROUNDING && t > ENDS && t < 1.0 - ENDS
+    u >= -ROUNDING && v >= -ROUNDING && u + v <= 1.0 + ROUNDING && t > ends && t < 1.0 - ends
 }
 
 #[cfg(test)]

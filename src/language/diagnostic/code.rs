@@ -454,6 +454,9 @@ codes! {
     /// parts of a collider that are less convex than was asked for
     RoughParts = "K1054";
 
+    /// a shape that cannot be laid out on a lightmap
+    NoLightmap = "K1055";
+
     /// nodes whose aims depend on each other
     AimCircle = "K1070";
     /// a node is where it looks

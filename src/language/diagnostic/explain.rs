@@ -559,6 +559,9 @@ examples! {
     RoughParts: "The convex parts are as many as `parts` allows, and some of them fill hollows of the shape more deeply than `concavity` allows. A warning.",
         "tolerance = 0.02\n[shape.a.torus]\nradius = 1\ntube-radius = 0.2\n[collider.c]\nshape = \"a\"\nfit = \"parts\"\nparts = 2" =>
         "tolerance = 0.02\n[shape.a.torus]\nradius = 1\ntube-radius = 0.2\n[collider.c]\nshape = \"a\"\nfit = \"parts\"\nparts = 12\nconcavity = 0.1";
+    NoLightmap: "A shape is cut into pieces that lie flat on one picture, apart from each other. Where the picture is too small for its pieces and what lies between them, or the shape has more than 200,000 triangles, there is no such layout.",
+        "[shape.a]\nlightmap = { size = 16, padding = 7 }\n[shape.a.box]\nsize = [1, 1, 1]" =>
+        "[shape.a]\nlightmap = { size = 256, padding = 2 }\n[shape.a.box]\nsize = [1, 1, 1]";
     AimCircle: "A node is turned to what it looks at, and turns what it carries. So it cannot look at what it carries itself, nor can two nodes each carry what the other looks at.",
         "[shape.a.sphere]\nradius = 1\n[node.n]\nshape = \"a\"\naim = \"m\"\n[node.m]\nparent = \"n\"\nat = [1, 0, 0]" =>
         "[shape.a.sphere]\nradius = 1\n[node.n]\nshape = \"a\"\naim = \"m\"\n[node.m]\nat = [1, 0, 0]";

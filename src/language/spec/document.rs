@@ -110,6 +110,9 @@ choices! {
         /// `NAME.web.glb`: as quantized, on the coarsest grid that the tolerance allows, and compressed. Needs
         /// `KHR_mesh_quantization` and `EXT_meshopt_compression`.
         Web = "web";
+        /// `NAME.verify.glb`: as core; meshes that are closed say by `EXT_mesh_manifold`, which is not required, which of their
+        /// vertices are one, so that programs that need solids have them without guessing.
+        Verify = "verify";
         /// `NAME.bevy.glb`: as core. Levels of detail in files of their own, each a scene for a `VisibilityRange`; colliders in `extras`.
         Bevy = "bevy";
         /// `NAME.godot.glb`: as core. Levels in files of their own, colliders by names. A warning tells names that Godot acts upon.

@@ -2,6 +2,7 @@
 
 mod arc;
 mod assertion;
+mod baked;
 mod bezier_triangle;
 mod bspline;
 mod check;
@@ -81,6 +82,7 @@ mod wire;
 pub use crate::language::suggest::closest;
 pub use arc::{Arc, CenterArc};
 pub use assertion::{Assertion, Demand, Expected};
+pub use baked::{Lightmap, Occlusion};
 pub use bezier_triangle::BezierTriangles;
 pub use bspline::{BSpline, Nurbs};
 pub use clip::{

@@ -85,6 +85,8 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
         &[
             "shape",
             "vertex-color",
+            "occlusion",
+            "lightmap",
             "box",
             "sphere",
             "cylinder",

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 use serde_json::Value as Json;
 
+use crate::language::spec::baked::{Lightmap, Occlusion};
 use crate::language::spec::bezier_triangle::BezierTriangles;
 use crate::language::spec::check::Check;
 use crate::language::spec::combine::{Array, Copy, Group, Mirror};
@@ -69,6 +70,10 @@ table! {
         /// Colors of its vertices, which multiply that of the material and those that its parts or its file have: `"#rrggbb"`,
         /// linear `[r, g, b]`, or a table of formulas.
         vertex_color: Option<Sp<VertexColor>>;
+        /// Darkens the colors of vertices by what hides the sky over them.
+        occlusion: Option<Sp<Occlusion>>;
+        /// Second texture coordinates, by which no two places of the shape share a place of a picture: for light that is baked.
+        lightmap: Option<Sp<Lightmap>>;
         /// The name of its material.
         material: Option<Sp<MaterialName>>;
         /// Factor of size: a number, or one for each axis. Applied before `rotate` and `at`.
