@@ -19,6 +19,9 @@ struct Profiles {
     profiles: Vec<Profile>,
 }
 
+/// Degrees by which corners may turn.
+const STEEPEST: f64 = 170.0;
+
 impl Builder<'_> {
     pub(super) fn sweep(&mut self, sweep: &spec::Sweep) -> Option<Recipe> {
         let profiles = self.profiles(sweep);
@@ -86,25 +89,13 @@ impl Builder<'_> {
 
     /// A path must not turn back: there the section would have no plane to stand in.
     fn check_path(&mut self, path: &AnyCurve, span: Span) -> Option<()> {
-        const STEEPEST: f64 = 170.0;
-        let domain = path.domain();
-        let mut corners: Vec<(f64, f64)> = path.joints().into_iter().map(|t| (t, t)).collect();
-        if path.is_closed() {
-            corners.push((domain.end, domain.start));
-        }
-        for (end, start) in corners {
-            let (before, after) = (path.direction(end, Side::Before), path.direction(start, Side::After));
-            let turn = atan2(before.cross(after).length(), before.dot(after)).to_degrees();
-            if turn > STEEPEST {
-                let message = format!("the path turns back by {turn:.1} degrees at parameter {start}");
-                let report = Diagnostic::error(Code::Reversal, message)
-                    .at(span, format!("corners may turn by up to {STEEPEST} degrees"))
-                    .help("round the corner with an arc or a spline");
-                self.report(report);
-                return None;
-            }
-        }
-        Some(())
+        let Some((turn, place)) = reversal(path) else { return Some(()) };
+        let message = format!("the path turns back by {turn:.1} degrees at parameter {}", show(place));
+        let report = Diagnostic::error(Code::Reversal, message)
+            .at(span, format!("corners may turn by up to {STEEPEST} degrees"))
+            .help("round the corner with an arc or a spline");
+        self.report(report);
+        None
     }
 
     /// On a closed path the last section must lie on the first.
@@ -183,4 +174,51 @@ fn to_segment(place: DVec2, (start, end): (DVec2, DVec2)) -> f64 {
     let along = end - start;
     let part = (place - start).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
     place.distance(start + along * part.clamp(0.0, 1.0))
+}
+
+/// The degrees and the parameter of the first place at which a path turns back: a corner, or where it slows down to
+/// nothing and goes on the other way.
+fn reversal(path: &AnyCurve) -> Option<(f64, f64)> {
+    /// Places of a piece that are looked at; between two of them it may turn by half a circle without being missed.
+    const PLACES: usize = 8;
+    /// The share of the domain in which a turn counts as a corner.
+    const CORNER: f64 = 1e-6;
+    let turn = |from: (f64, Side), to: (f64, Side)| {
+        let (before, after) = (path.direction(from.0, from.1), path.direction(to.0, to.1));
+        atan2(before.cross(after).length(), before.dot(after)).to_degrees()
+    };
+    let corner = |(end, start): (f64, f64)| {
+        let turn = turn((end, Side::Before), (start, Side::After));
+        (turn > STEEPEST).then_some((turn, start))
+    };
+    let domain = path.domain();
+    let mut ends = vec![domain.start];
+    ends.extend(path.breaks());
+    ends.push(domain.end);
+    let within = |from: f64, to: f64| {
+        let (mut from, mut to) = (from, to);
+        while turn((from, Side::After), (to, Side::Before)) > 90.0 {
+            let middle = f64::midpoint(from, to);
+            if to - from <= CORNER * domain.span() || middle <= from || middle >= to {
+                return corner((from, to));
+            }
+            if let Some(found) = corner((middle, middle)) {
+                return Some(found);
+            }
+            let first = turn((from, Side::After), (middle, Side::Before));
+            let second = turn((middle, Side::After), (to, Side::Before));
+            (from, to) = if first >= second { (from, middle) } else { (middle, to) };
+        }
+        None
+    };
+    let seam = path.is_closed().then(|| corner((domain.end, domain.start))).flatten();
+    let mut parts = ends.windows(2).flat_map(|pair| {
+        let place = move |k: usize| pair[0] + (pair[1] - pair[0]) * k as f64 / PLACES as f64;
+        (0..PLACES).map(move |k| (place(k), if k + 1 == PLACES { pair[1] } else { place(k + 1) }))
+    });
+    let found = parts.find_map(|(from, to)| {
+        let at = if from > domain.start { corner((from, from)) } else { None };
+        at.or_else(|| within(from, to))
+    });
+    found.or(seam)
 }
