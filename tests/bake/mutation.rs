@@ -232,7 +232,7 @@ fn damaged_documents_are_refused_with_a_place_or_baked_whole() {
 fn try_round(seeds: &[(String, String)], round: u64) -> (String, Result<Compiled, Diagnostics>) {
     let mut dice = Dice::new(round + 1000);
     let (path, text) = &seeds[dice.roll(seeds.len())];
-    let text = format!("{}\n[limits]\ntriangles = 20000\n", damaged(text, &mut dice));
+    let text = format!("{}\n[limits]\ntriangles = 20000\nimage-pixels = 4000000\n", damaged(text, &mut dice));
     let result = run(path, &text);
     (text, result)
 }
