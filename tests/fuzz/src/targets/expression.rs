@@ -22,7 +22,7 @@ pub(super) fn run(bytes: &[u8]) {
     );
     bake(
         &format!(
-            "tolerance = 0.2\n[field.f.formula]\nf = \"= {text}\"\n[shape.s.implicit]\nfield = \"f\"\nwithin = {{ min = [-1, -1, -1], max = [1, 1, 1] }}\n{LIMITS}"
+            "tolerance = 0.2\n[field.f.formula]\nf = \"= {text}\"\n[shape.s.implicit]\nfield = \"f\"\nwithin = {{ min = [-1, -1, -1], max = [1, 1, 1] }}\nsearch = 0.25\n{LIMITS}"
         ),
         &[],
     );
