@@ -120,6 +120,19 @@ def test_what_is_carried_by_what_looks_is_looked_at(kiln: Kiln) -> None:
         assert abs(np.linalg.norm(tip[:3, 3] - first[:3, 3]) - 2) < 1e-5
 
 
+def test_models_look_with_their_front(kiln: Kiln) -> None:
+    """Where z points up in the document the front of a model is its -y, and its top stays up."""
+    made = kiln.bake(
+        'up = "z"\n' + BALL + "[node.head]\nat = [1, 2, 0]\naim = [4, 6, 0]\n"
+        '[[clip.c.track]]\nnode = "ball"\npath = "translation"\n'
+        "keys = [{ at = 0, value = [0, 0, 0] }, { at = 1, value = [0, 0, 1] }]\n"
+    )
+    (head,) = worlds(made, 0.0, "head")
+    # The document's (x, y, z) is (x, z, -y) of the file, so its -y is the file's z.
+    assert head[:3, 2] == pytest.approx([0.6, 0, -0.8], abs=1e-6)
+    assert head[:3, 1] == pytest.approx([0, 1, 0], abs=1e-6)
+
+
 def test_lights_are_those_of_the_extension(kiln: Kiln) -> None:
     made = kiln.bake(
         BALL + '[node.a.light]\ncolor = [1, 0.5, 0.25]\nintensity = 40\nrange = 3\n[node.b.light]\nkind = "sun"\n'
