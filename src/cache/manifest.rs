@@ -35,12 +35,31 @@ pub(super) struct Input {
 }
 
 impl Manifest {
-    pub(super) fn read(store: &Store, key: &Hash) -> Option<Self> {
-        serde_json::from_slice(&store.entry(Kind::Manifest, key)?).ok()
+    pub(super) fn read(store: &Store, key: &Hash) -> Self {
+        Self::of(store.entry(Kind::Manifest, key))
+    }
+
+    /// The manifest of some bytes; empty where they are none.
+    pub(super) fn of(bytes: Option<Vec<u8>>) -> Self {
+        bytes.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default()
+    }
+
+    pub(super) fn text(&self) -> serde_json::Result<Vec<u8>> {
+        serde_json::to_vec(self)
+    }
+
+    /// Adds the sets of another one behind its own.
+    pub(super) fn adopt(&mut self, other: Self) {
+        for entry in other.entries {
+            if !self.entries.iter().any(|known| known.inputs == entry.inputs) {
+                self.entries.push(entry);
+            }
+        }
+        self.entries.truncate(MOST);
     }
 
     pub(super) fn write(&self, store: &Store, key: &Hash) -> std::io::Result<()> {
-        store.put_entry(Kind::Manifest, key, &serde_json::to_vec(self)?)
+        store.put_entry(Kind::Manifest, key, &self.text()?)
     }
 
     /// The first set whose inputs are all the same.

@@ -13,9 +13,14 @@
 //! file is read again whose size, times and number the system reports as they were; a change that keeps all of them is not
 //! seen.
 
+#[cfg(feature = "remote")]
+mod credentials;
+mod far;
 mod manifest;
 mod memory;
 mod record;
+#[cfg(feature = "remote")]
+mod remote;
 mod stamp;
 mod store;
 
@@ -26,11 +31,13 @@ use std::sync::{Mutex, PoisonError};
 use blake3::Hash;
 
 use crate::language::source::{DiskFiles, FileRecord, Files as _};
+pub use far::RemoteOptions;
+use far::{Far, Place, far};
 use manifest::Manifest;
 pub use memory::Memory;
 pub use record::{Baked, OutputFile, Record};
 use stamp::Stamps;
-use store::{Kind, Store};
+use store::{Kind, Store, seal, sealed};
 pub use store::{Stats, Verified};
 
 /// What a document is baked with; equal keys with equal inputs give equal outputs.
@@ -55,6 +62,8 @@ pub struct Cache {
     trouble: Mutex<Option<String>>,
     /// Realized shapes that were found, and that were kept.
     shapes: [AtomicUsize; 2],
+    /// One that machines share.
+    far: Option<Box<dyn Far>>,
 }
 
 /// What is known of a document.
@@ -75,7 +84,15 @@ impl Cache {
         let store = Store::open(folder, limit)?;
         let stamps = Stamps::load(&store);
         let compiler = compiler(&stamps);
-        Ok(Self { store, stamps, compiler, trouble: Mutex::default(), shapes: Default::default() })
+        Ok(Self { store, stamps, compiler, trouble: Mutex::default(), shapes: Default::default(), far: None })
+    }
+
+    /// The same, which looks into a shared cache for what the folder does not have. What is found there comes into the folder.
+    ///
+    /// # Errors
+    /// When the address is none, or this build has no shared caches; in words. No network is touched yet.
+    pub fn with_remote(self, options: &RemoteOptions) -> Result<Self, String> {
+        Ok(Self { far: Some(far(options)?), ..self })
     }
 
     /// The key of this compiler and the parts in their order.
@@ -95,13 +112,19 @@ impl Cache {
     #[must_use]
     pub fn find(&self, key: &Key, root: &Path) -> Option<Hit> {
         let files = DiskFiles::new(root).ok()?;
-        let manifest = Manifest::read(&self.store, &key.0)?;
         let same = |path: &str, hash: Option<Hash>| {
             let full = files.root().join(path);
             self.stamps.hash(&full, || files.read(path).ok().map(|bytes| blake3::hash(&bytes))) == hash
         };
+        let mut manifest = Manifest::read(&self.store, &key.0);
+        if manifest.find(same).is_none()
+            && let Some(shared) = self.far_entry(&key.0)
+        {
+            manifest.adopt(Manifest::of(Some(shared)));
+            self.note(manifest.write(&self.store, &key.0));
+        }
         let entry = manifest.find(same)?;
-        let bytes = self.store.object(&entry.record)?;
+        let bytes = self.object(&entry.record)?;
         let record = serde_json::from_slice(&bytes).ok()?;
         self.store.touch(Kind::Manifest, &key.0);
         let inputs = entry.inputs.iter().filter(|input| input.hash.is_some());
@@ -111,7 +134,31 @@ impl Cache {
     /// The bytes of an output, whole and unbroken.
     #[must_use]
     pub fn bytes(&self, file: &OutputFile) -> Option<Vec<u8>> {
-        self.store.object(&Hash::from_hex(&file.hash).ok()?)
+        self.object(&Hash::from_hex(&file.hash).ok()?)
+    }
+
+    /// An object of the folder, or of the shared cache.
+    fn object(&self, hash: &Hash) -> Option<Vec<u8>> {
+        self.store.object(hash).or_else(|| {
+            let far = self.far.as_ref()?;
+            let bytes = far.get(Place::Object, hash)?;
+            if blake3::hash(&bytes) != *hash {
+                far.is_broken();
+                return None;
+            }
+            self.note(self.store.put(&bytes).map(drop));
+            Some(bytes)
+        })
+    }
+
+    /// What the shared cache has under a key.
+    fn far_entry(&self, key: &Hash) -> Option<Vec<u8>> {
+        let far = self.far.as_ref()?;
+        let bytes = sealed(key, far.get(Place::Entry, key)?);
+        if bytes.is_none() {
+            far.is_broken();
+        }
+        bytes
     }
 
     /// Whether a file on disk holds what an output is.
@@ -134,16 +181,35 @@ impl Cache {
     #[must_use]
     pub fn shape(&self, key: &Hash) -> Option<Vec<u8>> {
         let key = self.of_compiler(key);
-        let bytes = self.store.entry(Kind::Shape, &key)?;
-        self.store.touch(Kind::Shape, &key);
+        let bytes = match self.store.entry(Kind::Shape, &key) {
+            Some(bytes) => {
+                self.store.touch(Kind::Shape, &key);
+                bytes
+            }
+            None => {
+                let bytes = self.far_entry(&key)?;
+                self.note(self.store.put_entry(Kind::Shape, &key, &bytes));
+                bytes
+            }
+        };
         self.shapes[0].fetch_add(1, Ordering::Relaxed);
         Some(bytes)
     }
 
     /// Keeps a realized shape under what it depends on.
     pub fn keep_shape(&self, key: &Hash, bytes: &[u8]) {
+        let key = self.of_compiler(key);
         self.shapes[1].fetch_add(1, Ordering::Relaxed);
-        self.note(self.store.put_entry(Kind::Shape, &self.of_compiler(key), bytes));
+        self.note(self.store.put_entry(Kind::Shape, &key, bytes));
+        if let Some(far) = &self.far {
+            far.put(Place::Entry, &key, &seal(&key, bytes));
+        }
+    }
+
+    /// What a person should know of the shared cache, each once.
+    #[must_use]
+    pub fn remote_troubles(&self) -> Vec<String> {
+        self.far.as_ref().map(|far| far.troubles()).unwrap_or_default()
     }
 
     /// How many realized shapes were found, and how many were made and kept.
@@ -167,11 +233,18 @@ impl Cache {
         for bytes in files {
             self.store.put(bytes)?;
         }
-        let hash = self.store.put(&serde_json::to_vec(record)?)?;
+        let text = serde_json::to_vec(record)?;
+        let hash = self.store.put(&text)?;
         // What another process wrote meanwhile can be lost here; it would then be baked once more.
-        let mut manifest = Manifest::read(&self.store, &key.0).unwrap_or_default();
+        let mut manifest = Manifest::read(&self.store, &key.0);
         manifest.add(read, hash);
-        manifest.write(&self.store, &key.0)
+        manifest.write(&self.store, &key.0)?;
+        if let Some(far) = &self.far {
+            files.iter().for_each(|bytes| far.put(Place::Object, &blake3::hash(bytes), bytes));
+            far.put(Place::Object, &hash, &text);
+            far.put(Place::Entry, &key.0, &seal(&key.0, &manifest.text()?));
+        }
+        Ok(())
     }
 
     /// Ends a run: notes what files looked like, and takes away what was not used for the longest time where the limit is

@@ -1,7 +1,7 @@
 //! The folder of a cache: objects under the hash of their bytes, manifests and realized shapes under their keys.
 //!
 //! Every file is written under another name first and then given its own, so that readers see it whole or not at all. What
-//! stands under a key ends with its own hash. The last use of a file is its time of modification.
+//! stands under a key ends with a hash of it and of the key. The last use of a file is its time of modification.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -141,14 +141,14 @@ impl Store {
     /// What is kept under a key, unless it is broken.
     pub(super) fn entry(&self, kind: Kind, key: &Hash) -> Option<Vec<u8>> {
         let (folder, name) = self.place(kind, key);
-        sealed(std::fs::read(folder.join(name)).ok()?)
+        sealed(key, std::fs::read(folder.join(name)).ok()?)
     }
 
     /// Keeps something under a key.
     pub(super) fn put_entry(&self, kind: Kind, key: &Hash, bytes: &[u8]) -> io::Result<()> {
         let (folder, name) = self.place(kind, key);
         self.grew.store(true, Ordering::Relaxed);
-        save(&folder, &[(&name, &seal(bytes))])
+        save(&folder, &[(&name, &seal(key, bytes))])
     }
 
     /// Notes that what is kept under a key was used.
@@ -158,11 +158,11 @@ impl Store {
     }
 
     pub(super) fn stamps(&self) -> Option<Vec<u8>> {
-        sealed(std::fs::read(self.folder.join("stamps")).ok()?)
+        sealed(&stamps_key(), std::fs::read(self.folder.join("stamps")).ok()?)
     }
 
     pub(super) fn put_stamps(&self, text: &[u8]) -> io::Result<()> {
-        save(&self.folder, &[("stamps", &seal(text))])
+        save(&self.folder, &[("stamps", &seal(&stamps_key(), text))])
     }
 
     /// All files; those that vanish meanwhile are not counted.
@@ -236,7 +236,9 @@ impl Kept {
         let name = self.path.file_name().unwrap_or_default().to_string_lossy();
         match self.kind {
             Kind::Object => blake3::hash(&bytes).to_hex().as_str() == name,
-            Kind::Manifest | Kind::Shape => sealed(bytes).is_some(),
+            Kind::Manifest | Kind::Shape => {
+                Hash::from_hex(name.as_bytes()).is_ok_and(|key| sealed(&key, bytes).is_some())
+            }
         }
     }
 }
@@ -265,15 +267,20 @@ fn used(path: &Path) {
     let _ = file.and_then(|file| file.set_modified(SystemTime::now()));
 }
 
-/// A text with its hash behind it.
-fn seal(text: &[u8]) -> Vec<u8> {
-    [text, b"\n", blake3::hash(text).to_hex().as_bytes()].concat()
+fn stamps_key() -> Hash {
+    blake3::hash(b"stamps")
 }
 
-/// The text of what was sealed; none where it is broken.
-fn sealed(mut bytes: Vec<u8>) -> Option<Vec<u8>> {
+/// What stands under a key, with a hash of both behind it.
+pub(super) fn seal(key: &Hash, bytes: &[u8]) -> Vec<u8> {
+    let hash = blake3::keyed_hash(key.as_bytes(), bytes).to_hex();
+    [bytes, b"\n", hash.as_bytes()].concat()
+}
+
+/// What was sealed under a key; none where it is broken, or was sealed under another one.
+pub(super) fn sealed(key: &Hash, mut bytes: Vec<u8>) -> Option<Vec<u8>> {
     let length = bytes.len().checked_sub(2 * blake3::OUT_LEN + 1)?;
-    let hash = blake3::hash(&bytes[..length]).to_hex();
+    let hash = blake3::keyed_hash(key.as_bytes(), &bytes[..length]).to_hex();
     if bytes[length] != b'\n' || &bytes[length + 1..] != hash.as_bytes() {
         return None;
     }

@@ -225,6 +225,16 @@ pub(crate) struct CacheOptions {
     /// How much the folder may take; what was not used for the longest time goes first [default: 1 GB]
     #[arg(long, value_name = "SIZE", value_parser = bytes)]
     pub(crate) cache_limit: Option<u64>,
+    /// A cache that machines share, which is asked for what the folder does not have: `https://HOST/PATH` or `s3://BUCKET/PREFIX`;
+    /// `KILN_REMOTE_CACHE` names one too
+    #[arg(long, value_name = "URL", conflicts_with = "no_cache")]
+    pub(crate) remote_cache: Option<String>,
+    /// Store what is baked there too
+    #[arg(long)]
+    pub(crate) remote_cache_write: bool,
+    /// Seconds that one request to it may take [default: 10]
+    #[arg(long, value_name = "SECONDS", value_parser = timeout)]
+    pub(crate) remote_cache_timeout: Option<f64>,
 }
 
 #[derive(Debug, Args)]
@@ -563,6 +573,11 @@ fn background(text: &str) -> Result<[u8; 4], String> {
     let number = u32::from_str_radix(digits, 16).map_err(|_| wrong())?;
     let [_, r, g, b] = number.to_be_bytes();
     Ok([r, g, b, 255])
+}
+
+fn timeout(text: &str) -> Result<f64, String> {
+    let time = seconds(text)?;
+    if (0.1..=600.0).contains(&time) { Ok(time) } else { Err("write 0.1 to 600 seconds".to_owned()) }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

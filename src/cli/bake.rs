@@ -400,6 +400,7 @@ impl Worker<'_> {
             let message = format!("the cache cannot be written: {trouble}");
             self.printer.warning(&message);
         }
+        cache.remote_troubles().iter().for_each(|trouble| self.printer.warning(trouble));
         if self.printer.verbose {
             let hits = self.hits.load(Ordering::Relaxed);
             let [found, kept] = cache.shape_counts();

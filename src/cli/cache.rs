@@ -1,6 +1,7 @@
 //! `kiln cache`, and which cache a command uses.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use serde_json::json;
 
@@ -9,7 +10,7 @@ use super::arguments::{CacheAction, CacheCommand, CacheOptions};
 use super::baked::size;
 use super::output::Printer;
 use super::project::{from_here, loaded_project, project_here};
-use crate::cache::{Cache, Stats, clear, stats, verify};
+use crate::cache::{Cache, RemoteOptions, Stats, clear, stats, verify};
 use crate::project::{Project, reason};
 
 /// The most that a cache's folder takes where nothing is said.
@@ -31,16 +32,44 @@ pub(crate) fn opened(options: &CacheOptions, project: Option<&Project>, printer:
     if options.no_cache {
         return None;
     }
-    let folder = folder(options.cache.as_ref(), project)?;
+    let remote = remote(options, project);
+    let Some(folder) = folder(options.cache.as_ref(), project) else {
+        if remote.is_some() {
+            printer
+                .warning("a shared cache needs a folder of this machine's own: name one with `--cache DIR`");
+        }
+        return None;
+    };
     let of_project = project.and_then(|project| project.file.project.cache.as_ref()?.value.limit);
     let limit = options.cache_limit.or(of_project.map(|limit| limit.value.0)).unwrap_or(LIMIT);
-    match Cache::open(&folder, limit) {
+    let opened = Cache::open(&folder, limit)
+        .map_err(|error| format!("no cache in {}: {}", folder.display(), reason(&error)));
+    let cache = opened.map_err(|message| printer.warning(&message)).ok()?;
+    let Some(remote) = remote else { return Some(cache) };
+    match cache.with_remote(&remote) {
         Ok(cache) => Some(cache),
-        Err(error) => {
-            printer.warning(&format!("no cache in {}: {}", folder.display(), reason(&error)));
-            None
+        Err(message) => {
+            printer.warning(&format!("no shared cache: {message}"));
+            Cache::open(&folder, limit).ok()
         }
     }
+}
+
+/// The shared cache that arguments or the environment name, else the project.
+fn remote(options: &CacheOptions, project: Option<&Project>) -> Option<RemoteOptions> {
+    let of_project = project.and_then(|project| project.file.project.cache.as_ref()?.value.remote.as_ref());
+    let of_project = of_project.map(|remote| &remote.value);
+    let named = || std::env::var("KILN_REMOTE_CACHE").ok().filter(|value| !value.is_empty());
+    let said = options.remote_cache.clone().or_else(named);
+    let trusted = said.is_some();
+    let url = said.or_else(|| of_project.map(|remote| remote.url.value.clone()))?;
+    let seconds = options.remote_cache_timeout.or(of_project.map(|remote| remote.timeout)).unwrap_or(10.0);
+    Some(RemoteOptions {
+        url,
+        writes: options.remote_cache_write || of_project.is_some_and(|remote| remote.write),
+        trusted,
+        timeout: Duration::from_secs_f64(seconds),
+    })
 }
 
 /// Looks after a cache.

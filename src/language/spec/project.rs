@@ -41,6 +41,21 @@ table! {
         /// How much the folder may take, in bytes or as in `"2 GB"`; 1 GB when it is not written. What was not used for the longest
         /// time goes first.
         limit: Option<Sp<Bytes>>;
+        /// One that machines share, which is asked for what the folder does not have.
+        remote: Option<Sp<ProjectRemote>>;
+    }
+}
+
+table! {
+    /// A cache that machines share. Nothing is asked of the network without it.
+    "remote cache" pub(crate) ProjectRemote {
+        /// Its address: `http://` or `https://` of a server that stores what is put under a path, as remote caches of Bazel do, or
+        /// `s3://BUCKET/PREFIX` of an object store.
+        url: Sp<String>;
+        /// Whether what is baked is stored there too.
+        write: bool = false;
+        /// Seconds that one request may take. A server that is slower is left alone.
+        timeout: f64 = 10.0 => Check::within(0.1, 600.0);
     }
 }
 
