@@ -223,10 +223,11 @@ impl Made<'_> {
                 target.tolerance = target.tolerance.map(|tolerance| tolerance / coarser);
             }
         }
-        let Realized { scene, shapes, loose, notes, .. } = &realized;
+        let Realized { scene, shapes, loose, unseen, notes, .. } = &realized;
         let mut found: Vec<Diagnostic> =
             notes.iter().map(|(shape, note)| noticed(built, *shape, note)).collect();
         found.extend(loose.iter().map(|one| motion::loose(built, one)));
+        found.extend(unseen.iter().map(|(clip, material)| motion::unseen(built, *clip, material)));
         found.extend(beyond_tolerance(scene, shapes, built));
         found.extend(state::beyond_tolerance(scene, shapes, built));
         Ok((Surfaces { realized, share }, found))

@@ -70,6 +70,8 @@ EXPECTED = {"web": ("UNSUPPORTED_EXTENSION at /extensionsUsed", "UNUSED_OBJECT a
 OF_LEVELS = ("UNSUPPORTED_EXTENSION at /extensionsUsed", "UNUSED_OBJECT at /nodes/")
 # Coordinates of a lightmap wait for the picture that an engine bakes, and have those of textures before them.
 OF_LIGHTMAPS = re.compile(r"UNUSED_OBJECT at /meshes/\d+/primitives/\d+/attributes/TEXCOORD_[01]:")
+# The validator knows the extension of properties that change and says that it does not look at all of it.
+OF_PROPERTIES = "INCOMPLETE_EXTENSION_SUPPORT at /animations/"
 # What a level of detail has in common with the finest.
 LIKE_THE_FINEST = ("closed", "manifold", "components", "euler")
 # Directions of bytes are of unit length within what rounding three of them takes, on an octahedron or not.
@@ -160,10 +162,12 @@ def compare(asset: str, report: Facts, measured: list[Measured]) -> list[Finding
 
 
 def expected(report: Facts, totals: Facts) -> Facts:
-    """The totals without what the validator must say of a profile, of levels of detail and of lightmaps."""
+    """The totals without what the validator must say of a profile, of levels, of properties and of lightmaps."""
     known = EXPECTED.get(report.get("profile", "core"), ())
     if any(len(chain) > 1 for chain in report.get("lods", {}).values()):
         known += OF_LEVELS
+    if any(clip.get("properties") for clip in report.get("clips", {}).values()):
+        known += (OF_PROPERTIES,)
     told = totals.get("validator-messages", [])
     left = [message for message in told if not message.startswith(known)]
     if any(shape.get("lightmap") for shape in report["shapes"].values()):
@@ -249,6 +253,10 @@ def clips(asset: str, report: Facts, one: Measured) -> Iterator[Finding]:
                 told = [vertex["at"] for vertex in vertices]
                 seen = other["vertices"].get(mesh)
                 yield Finding(asset, f"{place}.{mesh}", one.tool, told, seen, differs(told, seen), allowed)
+            # Other players have no numbers of what only changes, or do not know the extension.
+            for pointer, numbers in claim.get("properties", {}).items() if one.tool == "written" else ():
+                seen, near = other["properties"].get(pointer), COORDINATE * max(1.0, *map(abs, numbers))
+                yield Finding(asset, f"{place}{pointer}", one.tool, numbers, seen, differs(numbers, seen), near)
 
 
 def reaches(asset: str, named: tuple[str, Facts], one: Measured) -> Iterator[Finding]:

@@ -250,6 +250,12 @@ def without_lines(path: Path) -> bytes:
     return joined(document, binary)
 
 
+def points_at_properties(path: Path) -> bool:
+    """Whether an animation has channels that name no node (KHR_animation_pointer)."""
+    animations = split(path.read_bytes())[0].get("animations", [])
+    return any("node" not in channel["target"] for one in animations for channel in one["channels"])
+
+
 def without_animations(path: Path) -> bytes:
     """The .glb without its animations, for tools that show a file as its first one begins."""
     document, binary = split(path.read_bytes())

@@ -10,7 +10,7 @@ from typing import Any
 import pymeshlab
 
 from checks import finding
-from checks.document import Document, Mesh, without_lines
+from checks.document import Document, Mesh, points_at_properties, without_animations, without_lines
 
 TOOL = "meshlab"
 VERSION = version("pymeshlab")
@@ -19,7 +19,8 @@ VERSION = version("pymeshlab")
 def measure(path: Path) -> finding.Measured:
     """The facts of one file: totals by MeshLab's own reader, shapes from arrays with merged positions.
 
-    Lines are taken out before: MeshLab reads their indices as those of triangles.
+    Lines are taken out before: MeshLab reads their indices as those of triangles. So are animations with channels
+    that name no node, which it refuses.
     """
     meshes = Document(path).meshes
     surfaces = [mesh for mesh in meshes if mesh.surfaces]
@@ -39,6 +40,10 @@ def drawn(path: Path, has_lines: bool) -> int:
         if has_lines:
             shown = Path(folder) / "surfaces.glb"
             shown.write_bytes(without_lines(path))
+        if points_at_properties(path):
+            still = without_animations(shown)
+            shown = Path(folder) / "still.glb"
+            shown.write_bytes(still)
         opened.load_new_mesh(str(shown))
     return sum(opened.mesh(i).face_number() for i in range(opened.mesh_number()))
 

@@ -64,8 +64,15 @@ class Stage:
         time = question["time"]
         locals_ = [dict(node) for node in self.nodes]
         weights = {index: self.rest_weights(node) for index, node in enumerate(self.nodes)}
+        properties = {}
         for channel in animation["channels"]:
             sampler = animation["samplers"][channel["sampler"]]
+            if channel["target"]["path"] == "pointer":
+                pointer = channel["target"]["extensions"]["KHR_animation_pointer"]["pointer"]
+                value = self.sample(sampler, "pointer", time)
+                self.check_pointer(pointer, len(value))
+                properties[pointer] = value.tolist()
+                continue
             value = self.sample(sampler, channel["target"]["path"], time)
             if channel["target"]["path"] == "weights":
                 weights[channel["target"]["node"]] = value
@@ -77,7 +84,19 @@ class Stage:
             for name, told in question["vertices"].items()
         }
         nodes = {name: worlds[self.names[name]].T.ravel().tolist() for name in question["nodes"] if name in self.names}
-        return {"time": time, "nodes": nodes, "vertices": vertices}
+        return {"time": time, "nodes": nodes, "vertices": vertices, "properties": properties}
+
+    def check_pointer(self, pointer: str, width: int) -> None:
+        """That a pointer leads to an object of the document, and its last name to a property of so many numbers."""
+        *way, last = pointer.split("/")[1:]
+        found: Any = self.document.json
+        for name in way:
+            found = found[int(name)] if isinstance(found, list) else found[name]
+        held = found.get(last)
+        wanted = 1 if isinstance(held, (int, float)) else len(held) if held is not None else width
+        if not isinstance(found, dict) or wanted != width:
+            message = f"{pointer} has {wanted} numbers, and its channel {width}"
+            raise ValueError(message)
 
     def distances(self, animation: dict[str, Any], joint: str, task: dict[str, Any]) -> list[float]:
         """How far a point of a joint is from its place in each frame."""

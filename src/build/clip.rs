@@ -5,6 +5,7 @@ use glam::{DQuat, DVec3, DVec4};
 use super::Builder;
 use super::course::Moved;
 use super::profile::show;
+use super::property::is_property;
 use super::reach::Frames;
 use super::skeleton::unknown_joint;
 use super::skin::chain_joints;
@@ -14,7 +15,7 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, LimitRule, Sp};
 use crate::model::{Clip, ClipTrack, Space, Target};
-use crate::motion::{Axis, Path, Track};
+use crate::motion::{Axis, Course, Path, Track};
 
 /// The most samples of a clip, times what moves.
 const MOST_SAMPLES: u64 = 4_000_000;
@@ -45,7 +46,7 @@ impl Builder<'_> {
         let imported = imported.into_iter().flat_map(|(_, tracks)| tracks);
         let mut tracks: Vec<(ClipTrack, Span)> = imported.map(|track| (track, place)).collect();
         let mut good = true;
-        for track in &written.track {
+        for track in written.track.iter().filter(|track| !is_property(track)) {
             match self.track(written, track, duration) {
                 Some(made) => {
                     for one in made {
@@ -59,11 +60,12 @@ impl Builder<'_> {
         if written.track.is_empty() && written.reach.is_empty() && written.import.is_none() {
             let report = Diagnostic::error(Code::BadTrack, format!("clip `{name}` moves nothing"))
                 .at(span, "no track")
-                .help("write `[[clip.NAME.track]]` with `node` or `joint`, `path` and `keys`");
+                .help("write `[[clip.NAME.track]]` with `node`, `joint` or `material`, `path` and `keys`");
             self.report(report);
             return None;
         }
         good &= self.check_weights(&tracks) && self.check_events(written, duration);
+        let properties = self.properties(written, duration)?;
         if !good {
             return None;
         }
@@ -100,6 +102,7 @@ impl Builder<'_> {
             tolerance: written.tolerance.map(|tolerance| tolerance.value * self.model.frame.unit),
             rate: written.rate.value,
             tracks: tracks.into_iter().map(|(track, _)| track).collect(),
+            properties,
             reaches,
             events,
         })
@@ -155,7 +158,7 @@ impl Builder<'_> {
         let mut made = Vec::new();
         for (target, share) in targets {
             let joint = matches!(target, Target::Joint { .. });
-            let moved = Moved { joint, share, duration, looped: clip.r#loop.value };
+            let moved = Moved { joint, share, duration, looped: clip.r#loop.value, color: false };
             for course in self.courses(track, &moved)? {
                 let space = match (joint, track.along.is_some()) {
                     (true, _) => Space::Rest,
@@ -314,7 +317,7 @@ impl Builder<'_> {
             let Some(joint) = self.joint(track.target) else { continue };
             let playing = Track::new(&track.course);
             let value = |time: f64| track.converted(playing.at(time), &self.model.frame);
-            let times = times(track, duration);
+            let times = times(&track.course, duration);
             reports.extend(match track.course.path() {
                 Path::Rotation => {
                     turned_too_far(joint, &times, value).map(|report| report.at(*span, "this track"))
@@ -362,10 +365,10 @@ fn word(path: Path) -> &'static str {
 }
 
 /// Times at which limits are held against a track: 240 a second, and where it bends.
-fn times(track: &ClipTrack, duration: f64) -> Vec<f64> {
+pub(super) fn times(course: &Course, duration: f64) -> Vec<f64> {
     let count = crate::geometry::number::floor_count((duration * 240.0).ceil()).clamp(64, 1 << 20);
     let even = (0..=count).map(|k| duration * f64::from(k) / f64::from(count));
-    even.chain(track.course.stops().into_iter().filter(|time| (0.0..=duration).contains(time))).collect()
+    even.chain(course.stops().into_iter().filter(|time| (0.0..=duration).contains(time))).collect()
 }
 
 fn turned_too_far(
@@ -425,7 +428,7 @@ fn slid_too_far(
 }
 
 /// How far the end of a loop is from its start, in words; none where they agree.
-fn seam_gap(path: Path, first: DVec4, last: DVec4) -> Option<String> {
+pub(super) fn seam_gap(path: Path, first: DVec4, last: DVec4) -> Option<String> {
     if path == Path::Rotation {
         let apart = first.distance(last).min(first.distance(-last));
         let degrees = (2.0 * crate::geometry::number::asin((apart / 2.0).min(1.0)) * 2.0).to_degrees();

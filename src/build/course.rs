@@ -16,7 +16,7 @@ use crate::language::spec::{
 use crate::motion::{Course, EulerOrder, Interpolation, Keys, Law, LawFault, Speed};
 
 /// A law and how many numbers it gives, with the place that says so.
-type Counted = (Law, usize, Span);
+pub(super) type Counted = (Law, usize, Span);
 
 /// What a track is of.
 pub(super) struct Moved {
@@ -28,6 +28,8 @@ pub(super) struct Moved {
     pub(super) duration: f64,
     /// Whether the clip is a loop.
     pub(super) looped: bool,
+    /// Whether values are colors.
+    pub(super) color: bool,
 }
 
 impl Builder<'_> {
@@ -83,7 +85,7 @@ impl Builder<'_> {
     }
 
     /// The law that a track writes.
-    fn law_of(&mut self, track: &Sp<ClipTrack>, moved: &Moved) -> Option<Counted> {
+    pub(super) fn law_of(&mut self, track: &Sp<ClipTrack>, moved: &Moved) -> Option<Counted> {
         if let Some(formula) = &track.formula {
             let law = self.formula_law(formula, moved)?;
             return Some((law, formula.0.len(), formula.span()));
@@ -159,6 +161,12 @@ impl Builder<'_> {
                 good = false;
                 break;
             }
+        }
+        let colored = written.iter().find(|key| key.value.is_color && !moved.color);
+        if let Some(key) = colored {
+            let message = "a color stands only for a color, and this track moves something else";
+            self.report(Diagnostic::error(Code::KeyValue, message).at(key.value.span, "no color is wanted"));
+            return None;
         }
         if !good {
             return None;
@@ -236,6 +244,19 @@ impl Builder<'_> {
         Some(courses)
     }
 
+    /// A color that goes along a curve of colors.
+    pub(super) fn color_along(
+        &mut self,
+        track: &Sp<ClipTrack>,
+        along: &CurveReference,
+        moved: &Moved,
+    ) -> Option<Course> {
+        let path = self.curve_of(along)?;
+        let whole = length(&path);
+        let law = self.progress(track, (&path, along, whole), &Moved { color: false, ..*moved })?;
+        Some(Course::Along { path, law })
+    }
+
     /// The share of the length that is gone at each time.
     fn progress(
         &mut self,
@@ -296,6 +317,7 @@ fn wrong_count(track: &ClipTrack, (path, count, axis): (MotionPath, usize, bool)
         MotionPath::Translation => "three numbers, or one with `axis`",
         MotionPath::Rotation => "one number with `axis`, three angles, or four numbers of a quaternion",
         MotionPath::Scale => "one number or three, without `axis`",
+        _ => "one number",
     };
     let numbers = if count == 1 { "1 number".to_owned() } else { format!("{count} numbers") };
     let with = if axis { " with `axis`" } else { "" };

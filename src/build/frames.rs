@@ -13,9 +13,6 @@ use crate::language::spec::{self, Import, Shape as Kind, Sp, closest, kebab};
 use crate::model::{Clip, ClipTrack, Morph, Node, Recipe, Shape, ShapeHandle, Space, State, Target};
 use crate::motion::{Course, Interpolation, Keys, Law};
 
-/// Samples a second of the exact motion, to begin with.
-const RATE: f64 = 60.0;
-
 /// The most keys of all sequences of a file, times the frames that each has a weight for.
 const MOST_WEIGHTS: usize = 8_000_000;
 
@@ -249,18 +246,7 @@ impl<'a> Builder<'a> {
         let same = self.model.clips.iter().position(|clip| clip.name == name);
         match same {
             None => {
-                let (name, tolerance) = (name.to_owned(), None);
-                let (reaches, events) = (Vec::new(), Vec::new());
-                self.model.clips.push(Clip {
-                    name,
-                    duration,
-                    looped,
-                    tolerance,
-                    rate: RATE,
-                    tracks,
-                    reaches,
-                    events,
-                });
+                self.model.clips.push(Clip::of_file(name.to_owned(), duration, looped, tracks));
                 self.clip_places.push(played.span);
             }
             Some(index) if index >= written => {

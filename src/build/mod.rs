@@ -47,6 +47,7 @@ mod perturbed;
 mod polygon;
 mod primitive;
 mod profile;
+mod property;
 mod quadric;
 mod reach;
 mod ruled;

@@ -57,7 +57,13 @@ impl Builder<'_> {
         let Some(first) = clip.reach.first() else { return Some((Vec::new(), Vec::new())) };
         let skeleton = self.clip_skeleton(clip, &first.joint)?;
         let bones = self.model.skeletons[skeleton].skeleton.clone();
-        let moved = Moved { joint: false, share: 0.0, duration: frames.duration, looped: frames.looped };
+        let moved = Moved {
+            joint: false,
+            share: 0.0,
+            duration: frames.duration,
+            looped: frames.looped,
+            color: false,
+        };
         let tasks: Vec<Option<Task<'_>>> =
             clip.reach.iter().map(|written| self.task(&bones, written, &moved)).collect();
         let tasks: Vec<Task<'_>> = tasks.into_iter().collect::<Option<_>>()?;

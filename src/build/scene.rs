@@ -22,8 +22,6 @@ use crate::motion::{Course, Interpolation, Keys, Law};
 
 /// The most frames of a scene, times what moves.
 const MOST_PLACES: usize = 1_000_000;
-/// Samples a second of the exact motion, to begin with.
-const RATE: f64 = 60.0;
 /// Width of a picture over its height.
 const ASPECT: f64 = 4.0 / 3.0;
 /// Where cameras see nothing yet, where the file does not say, as a share of the distance to what they look at.
@@ -363,18 +361,7 @@ impl Builder<'_> {
             self.report(report);
             return;
         }
-        let (duration, tolerance, events) = (times[times.len() - 1], None, Vec::new());
-        let reaches = Vec::new();
-        self.model.clips.push(Clip {
-            name,
-            duration,
-            looped,
-            tolerance,
-            rate: RATE,
-            tracks,
-            reaches,
-            events,
-        });
+        self.model.clips.push(Clip::of_file(name, times[times.len() - 1], looped, tracks));
         self.clip_places.push(place.span);
     }
 }

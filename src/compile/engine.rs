@@ -6,7 +6,7 @@
 use crate::gltf::Profile;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
-use crate::language::spec::{ColliderForm, LodForm, Spec};
+use crate::language::spec::{Clip, ColliderForm, Definition, LodForm, Spec};
 
 /// How levels of detail stand in the files of a profile: as the document says, else by the extension where that is read or the
 /// file is for everyone, and in files of their own for engines that take one level a file.
@@ -80,10 +80,36 @@ pub(super) fn unread(profile: Profile, spec: &Spec) -> Vec<Diagnostic> {
                 .help("leave `colliders` out: each profile then has the form that its engine takes"),
         );
     }
+    found.extend(unread_properties(profile, engine, spec));
     if profile == Profile::Godot {
         found.extend(changed_by_godot(spec));
     }
     found
+}
+
+/// Tracks of properties that an engine's loader does not play, the first of each clip.
+fn unread_properties(profile: Profile, engine: &str, spec: &Spec) -> Vec<Diagnostic> {
+    if plays_properties(profile) {
+        return Vec::new();
+    }
+    let how =
+        if profile.reads_properties() { "plays none" } else { "refuses files with some; they are left out" };
+    let of_clip = |clip: &Definition<Clip>| {
+        let mut paths = clip.value.track.iter().filter_map(|track| track.path.as_ref());
+        let path = paths.find(|path| path.value.is_property())?;
+        let message =
+            format!("{engine} {how}: changes of materials, lights and cameras (`KHR_animation_pointer`)");
+        let report = Diagnostic::warning(Code::EngineProperties, message).at(path.span, "this change");
+        Some(
+            report.help("change it in the game, or let nodes, joints or weights of morphs move in its place"),
+        )
+    };
+    spec.clips.values().filter_map(of_clip).collect()
+}
+
+/// Whether the loader of an engine plays changes of properties.
+fn plays_properties(profile: Profile) -> bool {
+    profile.engine().is_none() || matches!(profile, Profile::Babylon | Profile::Blender | Profile::Godot)
 }
 
 /// Ends of names by which Godot makes something else of a node.

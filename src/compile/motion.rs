@@ -62,14 +62,25 @@ pub(super) fn refused(built: &Built, shape: ShapeHandle, error: &RealizeError) -
 pub(super) fn loose(built: &Built, one: &Loose) -> Diagnostic {
     let clip = &built.model.clips[one.clip];
     let span = built.clip_places.get(one.clip).copied().unwrap_or(Span::NONE);
+    let (unit, what) = if one.property.is_some() { ("", "changes") } else { (" m", "motion") };
     let message = format!(
-        "clip `{}` is written up to {:.3e} m from its exact motion, more than its tolerance of {:.3e} m",
+        "clip `{}` is written up to {:.3e}{unit} from its exact {what}, more than its tolerance of {:.3e}{unit}",
         clip.name, one.bound, one.tolerance
     );
     Diagnostic::warning(Code::LooseMotion, message)
         .at(span, "this clip")
         .note("where a motion jumps or changes faster than it is sampled, more keys do not come nearer")
         .help("write a higher `rate`, a coarser `tolerance`, or jumps as keys with `between = \"step\"`")
+}
+
+/// The warning for a clip that changes a material that nothing shows.
+pub(super) fn unseen(built: &Built, clip: usize, material: &str) -> Diagnostic {
+    let span = built.clip_places.get(clip).copied().unwrap_or(Span::NONE);
+    let name = &built.model.clips[clip].name;
+    let message = format!("clip `{name}` changes material `{material}`, which nothing shows");
+    Diagnostic::warning(Code::UnseenChange, message)
+        .at(span, "this clip")
+        .help("give the material to a shape or node that is shown, or leave the track out")
 }
 
 /// A number with few digits.

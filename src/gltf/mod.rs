@@ -15,6 +15,7 @@ mod manifold;
 mod material;
 mod morph;
 mod motion;
+mod pointer;
 mod position;
 mod profile;
 mod read;
@@ -29,7 +30,7 @@ pub use color::ReadColors;
 pub use profile::Profile;
 pub use read::{Geometry, Indices, Lines, Part, PositionBytes, Read, ReadError, read};
 pub use read_morph::ReadTarget;
-pub use read_motion::{ReadAnimation, ReadChannel, ReadInfluences, ReadSkin};
+pub use read_motion::{ReadAnimation, ReadChannel, ReadInfluences, ReadProperty, ReadSkin};
 pub use write::{
     WriteError, Written, WrittenAnimation, WrittenGeometry, WrittenLevel, WrittenTarget, container, write,
 };

@@ -9,6 +9,7 @@ use gltf::json::{Accessor, Animation, Index, Root, Skin, Value};
 use serde_json::json;
 
 use super::buffer::{Binary, Content, Elements, accessor};
+use super::pointer::{self, Pointer};
 use super::write::{Carriers, put};
 use crate::geometry::mesh;
 use crate::geometry::number::single;
@@ -73,35 +74,44 @@ pub(super) fn skins(root: &mut Root, binary: &mut Binary, scene: &Scene) {
     }
 }
 
-/// Writes all animations.
-pub(super) fn animations(root: &mut Root, binary: &mut Binary, scene: &Scene, carriers: &Carriers) {
-    for animation in &scene.animations {
+/// Writes animations; what points at properties is for [`document`](super::pointer::document).
+pub(super) fn animations(
+    (root, binary): (&mut Root, &mut Binary),
+    scene: &Scene,
+    all: &[&scene::Animation],
+    (carriers, has_properties): (&Carriers, bool),
+) -> Vec<Pointer> {
+    let mut pointers = Vec::new();
+    for animation in all {
         let mut inputs: Vec<(&[f64], Index<Accessor>)> = Vec::new();
         let mut samplers = Vec::new();
         let mut channels = Vec::new();
         for channel in &animation.channels {
-            let known = inputs.iter().find(|(times, _)| *times == channel.times.as_slice());
-            let input = match known {
-                Some((_, accessor)) => *accessor,
-                None => {
-                    let accessor = times(root, binary, &channel.times);
-                    inputs.push((&channel.times, accessor));
-                    accessor
-                }
-            };
+            let input = times(root, binary, &channel.times, &mut inputs);
             let sampler = Index::new(mesh::index(samplers.len()));
-            samplers.push(Sampler {
-                extensions: None,
-                extras: None,
-                input,
-                interpolation: Valid::Valid(if channel.stepped {
-                    Interpolation::Step
-                } else {
-                    Interpolation::Linear
-                }),
-                output: values(root, binary, channel),
-            });
+            let form = match channel.path {
+                Path::Translation | Path::Scale => (Type::Vec3, 3),
+                Path::Rotation => (Type::Vec4, 4),
+                Path::Weight => (Type::Scalar, 1),
+            };
+            let output = values(root, binary, &channel.values, form);
+            samplers.push(self::sampler(input, channel.stepped, output));
             channels.push(target(channel, sampler, carriers));
+        }
+        for channel in animation.properties.iter().filter(|_| has_properties) {
+            let input = times(root, binary, &channel.times, &mut inputs);
+            for (path, factor) in pointer::targets(scene, channel) {
+                let sampler = Index::new(mesh::index(samplers.len()));
+                let numbers: Vec<f64> = channel.values.iter().map(|value| value * factor).collect();
+                let form = match channel.property.width() {
+                    1 => (Type::Scalar, 1),
+                    3 => (Type::Vec3, 3),
+                    _ => (Type::Vec4, 4),
+                };
+                let output = values(root, binary, &numbers, form);
+                samplers.push(self::sampler(input, channel.stepped, output));
+                pointers.push(Pointer { animation: root.animations.len(), sampler, path });
+            }
         }
         root.push(Animation {
             extensions: None,
@@ -111,6 +121,12 @@ pub(super) fn animations(root: &mut Root, binary: &mut Binary, scene: &Scene, ca
             samplers,
         });
     }
+    pointers
+}
+
+fn sampler(input: Index<Accessor>, stepped: bool, output: Index<Accessor>) -> Sampler {
+    let interpolation = Valid::Valid(if stepped { Interpolation::Step } else { Interpolation::Linear });
+    Sampler { extensions: None, extras: None, input, interpolation, output }
 }
 
 fn target(channel: &scene::Channel, sampler: Index<Sampler>, carriers: &Carriers) -> Channel {
@@ -135,7 +151,16 @@ fn target(channel: &scene::Channel, sampler: Index<Sampler>, carriers: &Carriers
     }
 }
 
-fn times(root: &mut Root, binary: &mut Binary, times: &[f64]) -> Index<Accessor> {
+/// Times of keys; those that a channel of the clip has had are that accessor.
+fn times<'c>(
+    root: &mut Root,
+    binary: &mut Binary,
+    times: &'c [f64],
+    known: &mut Vec<(&'c [f64], Index<Accessor>)>,
+) -> Index<Accessor> {
+    if let Some((_, accessor)) = known.iter().find(|(other, _)| *other == times) {
+        return *accessor;
+    }
     let start = binary.start();
     times.iter().for_each(|time| put(&mut binary.bytes, [single(*time)]));
     let view = binary.view(root, start, None, Content::Attributes { stride: 4 });
@@ -144,19 +169,21 @@ fn times(root: &mut Root, binary: &mut Binary, times: &[f64]) -> Index<Accessor>
     let bound = |time: Option<&f64>| time.map(|time| Value::from(vec![single(*time)]));
     made.min = bound(times.first());
     made.max = bound(times.last());
-    root.push(made)
+    let made = root.push(made);
+    known.push((times, made));
+    made
 }
 
-fn values(root: &mut Root, binary: &mut Binary, channel: &scene::Channel) -> Index<Accessor> {
+fn values(
+    root: &mut Root,
+    binary: &mut Binary,
+    values: &[f64],
+    (shape, width): (Type, usize),
+) -> Index<Accessor> {
     let start = binary.start();
-    channel.values.iter().for_each(|value| put(&mut binary.bytes, [single(*value)]));
-    let (shape, width) = match channel.path {
-        Path::Translation | Path::Scale => (Type::Vec3, 3),
-        Path::Rotation => (Type::Vec4, 4),
-        Path::Weight => (Type::Scalar, 1),
-    };
+    values.iter().for_each(|value| put(&mut binary.bytes, [single(*value)]));
     let view = binary.view(root, start, None, Content::Attributes { stride: 4 * width });
-    let count = channel.values.len() / width;
+    let count = values.len() / width;
     let elements = Elements { component: ComponentType::F32, shape, count };
     root.push(accessor(view, 0, elements, None))
 }

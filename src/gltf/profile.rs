@@ -100,6 +100,12 @@ impl Profile {
         matches!(self, Self::Verify)
     }
 
+    /// Whether files say what changes of materials, lights and cameras: Bevy refuses those that do.
+    #[must_use]
+    pub const fn reads_properties(self) -> bool {
+        !matches!(self, Self::Bevy)
+    }
+
     /// Whether buffer views are compressed.
     #[must_use]
     pub const fn is_compressed(self) -> bool {

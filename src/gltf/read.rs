@@ -18,6 +18,7 @@ use super::color::{ReadColors, read_colors};
 use super::read_second::read_second;
 use crate::geometry::mesh;
 use crate::geometry::number::size;
+use crate::packing::{PointerChannel, without_pointers};
 use crate::scene::Grid;
 
 /// A file, read.
@@ -35,6 +36,8 @@ pub struct Read<'a> {
     pub(super) carriers: Vec<(usize, usize)>,
     /// The meshes that have levels of detail.
     pub levels: Vec<ReadLevels>,
+    /// Channels of animations that point at properties.
+    pub(super) pointers: Vec<PointerChannel>,
 }
 
 /// A position as it stands in a file: three little-endian floats.
@@ -158,8 +161,8 @@ pub enum ReadError {
 /// wrote, other primitives).
 pub fn read(bytes: &[u8]) -> Result<Read<'_>, ReadError> {
     let container = gltf::Glb::from_slice(bytes).map_err(|error| ReadError::Container(error.to_string()))?;
-    let mut root: Root =
-        serde_json::from_slice(&container.json).map_err(|error| ReadError::Json(error.to_string()))?;
+    let (mut root, pointers) =
+        document(&container.json).map_err(|error| ReadError::Json(error.to_string()))?;
     let binary = match container.bin {
         Some(Cow::Borrowed(binary)) => binary,
         _ => &[],
@@ -170,7 +173,15 @@ pub fn read(bytes: &[u8]) -> Result<Read<'_>, ReadError> {
     let geometries = geometries?;
     let levels = read_levels(&root);
     let carriers = drop_carriers(&mut root, grid);
-    Ok(Read { root, geometries, binary, grid, carriers, levels })
+    Ok(Read { root, geometries, binary, grid, carriers, levels, pointers })
+}
+
+/// A document and the channels of its animations that point at properties.
+fn document(json: &[u8]) -> serde_json::Result<(Root, Vec<PointerChannel>)> {
+    serde_json::from_slice(json).map(|root| (root, Vec::new())).or_else(|error| {
+        let (rest, pointers) = without_pointers(json).ok_or(error)?;
+        Ok((serde_json::from_slice(&rest)?, pointers))
+    })
 }
 
 #[derive(Clone, Copy)]

@@ -11,6 +11,7 @@ use gltf::json::{Accessor, Index};
 
 use super::read::{Read, ReadError, elements, kind};
 use crate::motion::Path;
+use crate::packing::PointerChannel;
 
 /// A skin of a file.
 #[derive(Clone, Debug)]
@@ -29,6 +30,21 @@ pub type ReadInfluences = [(usize, f64); 4];
 pub struct ReadAnimation {
     /// Its channels.
     pub channels: Vec<ReadChannel>,
+    /// Its channels that point at properties.
+    pub properties: Vec<ReadProperty>,
+}
+
+/// A channel that points at a property.
+#[derive(Clone, Debug)]
+pub struct ReadProperty {
+    /// The JSON pointer.
+    pub pointer: String,
+    /// Whether values stay until the next key.
+    pub stepped: bool,
+    /// Seconds.
+    pub times: Vec<f64>,
+    /// For each time as many numbers.
+    pub values: Vec<f64>,
 }
 
 /// A channel of an animation.
@@ -94,10 +110,45 @@ impl Read<'_> {
     /// # Errors
     /// When they are broken or not written as ours are.
     pub fn animations(&self) -> Result<Vec<ReadAnimation>, ReadError> {
-        self.root.animations.iter().map(|animation| self.animation(animation)).collect()
+        let own = |(index, animation)| {
+            let properties = self.pointers.iter().filter(|pointer| pointer.animation == index);
+            let properties = properties.map(|pointer| self.property(animation, pointer));
+            let properties: Result<Vec<_>, _> = properties.collect();
+            self.animation(animation, properties?)
+        };
+        self.root.animations.iter().enumerate().map(own).collect()
     }
 
-    fn animation(&self, animation: &gltf::json::Animation) -> Result<ReadAnimation, ReadError> {
+    fn property(
+        &self,
+        animation: &gltf::json::Animation,
+        pointer: &PointerChannel,
+    ) -> Result<ReadProperty, ReadError> {
+        let sampler = animation.samplers.get(pointer.sampler);
+        let sampler = sampler.ok_or_else(|| ReadError::Missing("a sampler".to_owned()))?;
+        let stepped = stepped(sampler)?;
+        let times = self.floats::<1>(sampler.input, Type::Scalar)?;
+        let values: Vec<f32> = match kind(&self.root, sampler.output) {
+            Some((_, Type::Vec3)) => self.floats::<3>(sampler.output, Type::Vec3)?.into_flattened(),
+            Some((_, Type::Vec4)) => self.floats::<4>(sampler.output, Type::Vec4)?.into_flattened(),
+            _ => self.floats::<1>(sampler.output, Type::Scalar)?.into_flattened(),
+        };
+        if times.is_empty() || values.is_empty() || !values.len().is_multiple_of(times.len()) {
+            return Err(ReadError::Missing("a value of an animation".to_owned()));
+        }
+        Ok(ReadProperty {
+            pointer: pointer.path.clone(),
+            stepped,
+            times: times.into_iter().map(|[time]| f64::from(time)).collect(),
+            values: values.into_iter().map(f64::from).collect(),
+        })
+    }
+
+    fn animation(
+        &self,
+        animation: &gltf::json::Animation,
+        properties: Vec<ReadProperty>,
+    ) -> Result<ReadAnimation, ReadError> {
         let channel = |channel: &gltf::json::animation::Channel| {
             let unsupported = |what: &str| ReadError::Unsupported(what.to_owned());
             let sampler = animation.samplers.get(channel.sampler.value());
@@ -109,11 +160,7 @@ impl Read<'_> {
                 Checked::Valid(Property::MorphTargetWeights) => Path::Weight,
                 _ => return Err(unsupported("an animated property")),
             };
-            let stepped = match sampler.interpolation {
-                Checked::Valid(Interpolation::Step) => true,
-                Checked::Valid(Interpolation::Linear) => false,
-                _ => return Err(unsupported("a cubic sampler")),
-            };
+            let stepped = stepped(sampler)?;
             let times = self.floats::<1>(sampler.input, Type::Scalar)?;
             let wide = |rows: &[f32]| rows.iter().map(|part| f64::from(*part)).collect();
             let values: Vec<f64> = match path {
@@ -140,7 +187,7 @@ impl Read<'_> {
             })
         };
         let channels: Result<Vec<_>, _> = animation.channels.iter().map(channel).collect();
-        Ok(ReadAnimation { channels: channels? })
+        Ok(ReadAnimation { channels: channels?, properties })
     }
 
     fn floats<const N: usize>(
@@ -165,5 +212,14 @@ impl Read<'_> {
         }
         let found = elements(&self.root, self.binary, index, 4)?;
         Ok(found.each(self.binary).map(|element| element.as_chunks::<4>().0[0]).collect())
+    }
+}
+
+/// Whether values of a sampler stay until the next key.
+fn stepped(sampler: &gltf::json::animation::Sampler) -> Result<bool, ReadError> {
+    match sampler.interpolation {
+        Checked::Valid(Interpolation::Step) => Ok(true),
+        Checked::Valid(Interpolation::Linear) => Ok(false),
+        _ => Err(ReadError::Unsupported("a cubic sampler".to_owned())),
     }
 }

@@ -14,13 +14,13 @@ use super::buffer::{Binary, Content, Elements, at, index_accessors, index_width}
 use super::color::colors;
 use super::position::positions;
 use super::profile::Profile;
-use super::{carrier, collider, duplicate, lines, manifold, material, morph, motion, view};
+use super::{carrier, collider, duplicate, lines, manifold, material, morph, motion, pointer, view};
 use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
 use crate::geometry::number::{floor_count, size};
 use crate::geometry::tessellate::Deviation;
 use crate::packing::{exponential, octahedral, signed_byte};
-use crate::scene::{Checked, Collider, Geometry, Grid, LevelUse};
+use crate::scene::{Checked, Collider, Geometry, Grid, LevelUse, PropertyChannel};
 
 /// The bytes of a file and what only its writer knows of them.
 #[derive(Clone, Debug)]
@@ -59,6 +59,8 @@ pub struct WrittenAnimation {
     pub tolerance: f64,
     /// Samples of the exact motion.
     pub samples: usize,
+    /// What it changes of materials, lights and cameras, in the order of the file; some are two properties there.
+    pub properties: Vec<PropertyChannel>,
 }
 
 /// What is known of a geometry beyond its bytes.
@@ -113,6 +115,7 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
         binary: Binary::new(binary_size(checked), profile.is_compressed()),
         small: profile.is_quantized(),
         grid: scene.grid,
+        pointers: Vec::new(),
     };
     if writer.small {
         writer.root.extensions_used.push(QUANTIZATION.to_owned());
@@ -138,19 +141,27 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
     motion::skins(&mut writer.root, &mut writer.binary, scene);
     let carriers = carrier::carriers(scene);
     let bearers = carrier::bearers(scene, &carriers);
-    motion::animations(&mut writer.root, &mut writer.binary, scene, &bearers);
+    let has_properties = profile.reads_properties();
+    let written: Vec<&crate::scene::Animation> = scene
+        .animations
+        .iter()
+        .filter(|animation| has_properties || !animation.channels.is_empty())
+        .collect();
+    let both = (&mut writer.root, &mut writer.binary);
+    writer.pointers = motion::animations(both, scene, &written, (&bearers, has_properties));
     writer.nodes(checked, &carriers);
     duplicate::merge_accessors(&mut writer.root);
     if profile.tells_manifolds() {
         manifold::mark(&mut writer.root, &mut writer.binary, scene);
     }
-    let animated = |animation: &crate::scene::Animation| WrittenAnimation {
+    let animated = |animation: &&crate::scene::Animation| WrittenAnimation {
         name: animation.name.clone(),
         bound: animation.bound,
         tolerance: animation.tolerance,
         samples: animation.samples,
+        properties: if has_properties { animation.properties.clone() } else { Vec::new() },
     };
-    let animations = scene.animations.iter().map(animated).collect();
+    let animations = written.iter().map(animated).collect();
     let known = |(index, geometry): (usize, &Geometry)| WrittenGeometry {
         name: geometry.name.clone(),
         mesh: scene.meshes.iter().position(|mesh| mesh.geometry == index).unwrap_or(0),
@@ -220,8 +231,15 @@ fn binary_size(checked: Checked<'_>) -> usize {
         + 1024 * (scene.geometries.len() + scene.meshes.len() + scene.materials.len() + scene.nodes.len());
     let channel = |channel: &crate::scene::Channel| (channel.times.len() + channel.values.len()) * 4 + 256;
     let channels = scene.animations.iter().flat_map(|animation| animation.channels.iter().map(channel));
+    let change = |channel: &PropertyChannel| (channel.times.len() + 2 * channel.values.len()) * 4 + 512;
+    let changes = scene.animations.iter().flat_map(|animation| animation.properties.iter().map(change));
     let bind: usize = scene.skins.iter().map(|skin| skin.joints.len() * 80).sum();
-    scene.geometries.iter().map(geometry).sum::<usize>() + images + json + channels.sum::<usize>() + bind
+    scene.geometries.iter().map(geometry).sum::<usize>()
+        + images
+        + json
+        + channels.sum::<usize>()
+        + changes.sum::<usize>()
+        + bind
 }
 
 /// Nodes that show a mesh, each with the node below it that holds the mesh.
@@ -247,6 +265,8 @@ struct Writer {
     /// Whether attributes are whole numbers.
     small: bool,
     grid: Option<Grid>,
+    /// Channels that name no node.
+    pointers: Vec<pointer::Pointer>,
 }
 
 impl Writer {
@@ -409,8 +429,8 @@ impl Writer {
         self.binary.start();
         self.binary.buffers(&mut self.root);
         let binary = self.binary.bytes;
-        let json =
-            serde_json::to_vec(&self.root).expect("a glTF document has no map with other keys than text");
+        let json = pointer::document(&mut self.root, &self.pointers)
+            .expect("a glTF document has no map with other keys than text");
         container(json, binary)
     }
 }

@@ -2,9 +2,9 @@
 
 use glam::{DQuat, DVec3, DVec4};
 
-use super::{Frame, ShapeHandle};
+use super::{Frame, MaterialHandle, ShapeHandle};
 use crate::geometry::formula::Formula;
-use crate::motion::{Course, Envelope, Limits, Path, Range, Skeleton, Transform};
+use crate::motion::{Course, Envelope, Limits, Path, Property, Range, Skeleton, Transform};
 
 /// A skeleton of the document.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,10 +115,61 @@ pub struct Clip {
     pub rate: f64,
     /// What moves.
     pub tracks: Vec<ClipTrack>,
+    /// What changes of materials, lights and cameras.
+    pub properties: Vec<PropertyTrack>,
     /// What joints reach, for the report.
     pub reaches: Vec<ReachTask>,
     /// What happens: seconds and names, in the order of time.
     pub events: Vec<(f64, String)>,
+}
+
+impl Clip {
+    /// A clip of a file: sampled 60 times a second, within the model's own tolerance.
+    #[must_use]
+    pub fn of_file(name: String, duration: f64, looped: bool, tracks: Vec<ClipTrack>) -> Self {
+        let (properties, reaches, events) = (Vec::new(), Vec::new(), Vec::new());
+        Self { name, duration, looped, tolerance: None, rate: 60.0, tracks, properties, reaches, events }
+    }
+}
+
+/// A property in change.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PropertyTrack {
+    /// Of what.
+    pub owner: Owner,
+    /// Which.
+    pub property: Property,
+    /// The numbers that the course gives, from this place in the value on; the others stay as they are at rest.
+    pub first: usize,
+    /// How many the course gives.
+    pub count: usize,
+    /// How: by an [`Offset`](Course::Offset), whose numbers are the value, or by the way [along](Course::Along) a curve.
+    pub course: Course,
+    /// Whether numbers beyond what the property may be are brought into its range.
+    pub clamp: bool,
+}
+
+/// Whose properties change.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Owner {
+    /// A material, and those that were made of it for shapes with normal maps.
+    Material(Vec<MaterialHandle>),
+    /// The light or the camera of a node, by its index in [`Model::nodes`](super::Model::nodes).
+    Node(usize),
+}
+
+impl PropertyTrack {
+    /// The value of the property where the course gives one, in the document's unit.
+    #[must_use]
+    pub fn composed(&self, rest: DVec4, given: DVec4) -> DVec4 {
+        let (least, most) = self.property.range();
+        let mut value = rest;
+        for part in 0..self.count {
+            let number = given[part];
+            value[self.first + part] = if self.clamp { number.clamp(least, most) } else { number };
+        }
+        value
+    }
 }
 
 /// A point of a joint that is brought to places.

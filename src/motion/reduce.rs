@@ -104,12 +104,12 @@ pub fn reduce(rig: &Rig, moving: &[Moving<'_>], wanted: &Wanted) -> Reduced {
 }
 
 /// A time in the precision in which it is written.
-fn single(time: f64) -> f64 {
+pub(super) fn single(time: f64) -> f64 {
     f64::from(crate::geometry::number::single(time))
 }
 
 /// A value in the precision in which it is written; rotations keep unit length as far as that allows.
-fn rounded(value: DVec4) -> DVec4 {
+pub(super) fn rounded(value: DVec4) -> DVec4 {
     value.as_vec4().as_dvec4()
 }
 
@@ -135,7 +135,7 @@ impl<'a> Study<'a> {
         wanted: &Wanted,
         (rate, order): (f64, &'a [usize]),
     ) -> Self {
-        let times = times(wanted, rate);
+        let times = sampled(wanted, rate);
         let values: Vec<Vec<DVec4>> = moving
             .iter()
             .map(|one| {
@@ -359,14 +359,7 @@ impl<'a> Study<'a> {
         steps: &[f64],
         written: impl Fn(Vec<f64>, Vec<DVec4>) -> ReducedTrack,
     ) -> ReducedTrack {
-        let (mut times, mut values): (Vec<f64>, Vec<DVec4>) = (Vec::new(), Vec::new());
-        for time in steps {
-            let value = (one.exact)(*time);
-            if values.last() != Some(&value) {
-                times.push(single(*time));
-                values.push(value);
-            }
-        }
+        let (times, values) = stepped(&*one.exact, steps);
         debug_assert!(!times.is_empty() && self.times.len() > 1);
         written(times, values)
     }
@@ -397,7 +390,7 @@ impl<'a> Study<'a> {
         written(times, values)
     }
 
-    /// The furthest sample to which the way from another runs within a limit: found by doubling the step, then halving.
+    /// The furthest sample to which the way from another runs within a limit.
     fn furthest(&self, path: Path, values: &[DVec4], from: usize, limit: f64) -> usize {
         let last = values.len() - 1;
         let reaches = |to: usize| {
@@ -410,24 +403,7 @@ impl<'a> Study<'a> {
                 })
             })
         };
-        // Keys stand at even samples; the next one is always reached.
-        let (mut good, mut step) = (from + 2, 2);
-        let mut bad = loop {
-            let next = good + 2 * step;
-            if next > last {
-                break last + 2;
-            }
-            if !reaches(next) {
-                break next;
-            }
-            (good, step) = (next, 2 * step);
-        };
-        while bad - good > 2 {
-            let middle = good + (bad - good) / 4 * 2;
-            let middle = if middle == good { good + 2 } else { middle };
-            if reaches(middle) { good = middle } else { bad = middle }
-        }
-        good
+        furthest(from, last, reaches)
     }
 
     /// The greatest distance of a point from its place, with either player; at least `enough` as soon as that is passed.
@@ -482,8 +458,43 @@ impl ReducedTrack {
     }
 }
 
+/// The furthest sample that a key at `from` reaches, at an even place: found by doubling the step, then halving. The next one
+/// is always reached.
+pub(super) fn furthest(from: usize, last: usize, reaches: impl Fn(usize) -> bool) -> usize {
+    let (mut good, mut step) = (from + 2, 2);
+    let mut bad = loop {
+        let next = good + 2 * step;
+        if next > last {
+            break last + 2;
+        }
+        if !reaches(next) {
+            break next;
+        }
+        (good, step) = (next, 2 * step);
+    };
+    while bad - good > 2 {
+        let middle = good + (bad - good) / 4 * 2;
+        let middle = if middle == good { good + 2 } else { middle };
+        if reaches(middle) { good = middle } else { bad = middle }
+    }
+    good
+}
+
+/// The keys of what jumps from key to key, without those that change nothing.
+pub(super) fn stepped(exact: &dyn Fn(f64) -> DVec4, steps: &[f64]) -> (Vec<f64>, Vec<DVec4>) {
+    let (mut times, mut values): (Vec<f64>, Vec<DVec4>) = (Vec::new(), Vec::new());
+    for time in steps {
+        let value = exact(*time);
+        if values.last() != Some(&value) {
+            times.push(single(*time));
+            values.push(value);
+        }
+    }
+    (times, values)
+}
+
 /// Even samples, the stops, and halfway between any two.
-fn times(wanted: &Wanted, rate: f64) -> Vec<f64> {
+pub(super) fn sampled(wanted: &Wanted, rate: f64) -> Vec<f64> {
     let count = crate::geometry::number::floor_count((wanted.duration * rate).ceil()).clamp(8, 1 << 24);
     let even = (0..=count).map(|k| wanted.duration * f64::from(k) / f64::from(count));
     let stops = wanted.stops.iter().copied().filter(|time| (0.0..=wanted.duration).contains(time));

@@ -10,6 +10,7 @@
 mod codec;
 mod filter;
 mod order;
+mod pointer;
 mod simplify;
 mod tangent;
 mod unpack;
@@ -23,6 +24,7 @@ pub use filter::{
     Filter, exponential, exponential_step, octahedral, power_of_two, quaternion, share_byte, signed_byte,
 };
 pub use order::{order_for_cache, order_for_strips};
+pub use pointer::{POINTER, PointerChannel, without_pointers};
 pub use simplify::{Attributes, simplified};
 pub use tangent::corner_tangents;
 pub use unpack::{EXTENSION, EXTENSIONS, MOST_RATIO, UnpackError, decoded, stored_lengths, unpacked};

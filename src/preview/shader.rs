@@ -54,7 +54,7 @@ impl<'a> Shader<'a> {
             materials.resize(piece.end, crate::geometry::number::count_of(piece.material));
         }
         let lights = lights(&camera.axes());
-        let opaque = asset.materials.iter().all(|material| material.cutoff == Cutoff::Opaque);
+        let opaque = stage.materials.iter().all(|material| material.cutoff == Cutoff::Opaque);
         let mut shader = Self {
             asset,
             stage,
@@ -77,7 +77,7 @@ impl<'a> Shader<'a> {
     }
 
     fn material(&self, triangle: u32) -> &Material {
-        &self.asset.materials[self.materials[triangle as usize] as usize]
+        &self.stage.materials[self.materials[triangle as usize] as usize]
     }
 
     fn corners(&self, triangle: u32) -> [Vertex; 3] {

@@ -6,7 +6,7 @@
 use glam::{DMat3, DMat4, DVec3};
 use thiserror::Error;
 
-use super::asset::{Asset, Part};
+use super::asset::{Asset, Material, Part, changed};
 use super::heat::HeatMap;
 use crate::geometry::number::Bounds;
 
@@ -19,6 +19,8 @@ pub struct Stage {
     pub triangles: Vec<[u32; 3]>,
     /// Lines of vertices.
     pub lines: Vec<[u32; 2]>,
+    /// The materials of the asset as they are then.
+    pub materials: Vec<Material>,
     /// What the triangles belong to, in their order.
     pub pieces: Vec<Piece>,
     /// The box around all vertices that are used.
@@ -92,6 +94,7 @@ impl Stage {
     /// When there is no clip of the name.
     pub fn new(asset: &Asset, moment: &Moment) -> Result<Self, StageError> {
         let mut nodes = asset.nodes.clone();
+        let mut materials = None;
         if let Some(asked) = &moment.clip {
             let clip =
                 asset.clips.iter().find(|clip| clip.name == *asked).ok_or_else(|| StageError::Clip {
@@ -99,6 +102,7 @@ impl Stage {
                     clips: asset.clips.iter().map(|clip| clip.name.clone()).collect(),
                 })?;
             clip.apply(moment.time, &mut nodes);
+            materials = Some(changed(asset, clip, moment.time));
         }
         let mut worlds = vec![DMat4::IDENTITY; nodes.len()];
         let mut open: Vec<(usize, DMat4)> =
@@ -113,6 +117,7 @@ impl Stage {
             vertices: Vec::new(),
             triangles: Vec::new(),
             lines: Vec::new(),
+            materials: materials.unwrap_or_else(|| asset.materials.clone()),
             pieces: Vec::new(),
             bounds: Bounds::of_points([]),
             heat: None,

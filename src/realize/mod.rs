@@ -25,6 +25,7 @@ mod nearest;
 mod node;
 mod normal_map;
 mod parameters;
+mod property;
 mod reach;
 mod recipe_hash;
 mod shape;
@@ -51,6 +52,7 @@ use crate::geometry::solid::SolidFault;
 use crate::geometry::subdivide::SubdivideFault;
 use crate::geometry::tessellate::{DeformError, TessellateError, told};
 use crate::model::{MaterialHandle, Model, ShapeHandle};
+use crate::motion::Property;
 use crate::scene::Scene;
 
 /// How to realize.
@@ -255,6 +257,8 @@ pub struct Realized {
     pub materials: Vec<Vec<Option<MaterialHandle>>>,
     /// Motions that are not within their tolerance.
     pub loose: Vec<Loose>,
+    /// For each change of a material that is on nothing shown its clip and the name of the material.
+    pub unseen: Vec<(usize, String)>,
     /// Things a person should know, each with its shape.
     pub notes: Vec<(ShapeHandle, Note)>,
 }
@@ -264,9 +268,11 @@ pub struct Realized {
 pub struct Loose {
     /// Index of the clip.
     pub clip: usize,
-    /// How far, metres.
+    /// What is not: a property, or where none is named the motion.
+    pub property: Option<Property>,
+    /// How far, metres or in the property's unit.
     pub bound: f64,
-    /// What was asked for, metres.
+    /// What was asked for.
     pub tolerance: f64,
 }
 

@@ -3,21 +3,29 @@
 use glam::{DAffine3, DVec3, DVec4};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
-use super::{Loose, RealizeError};
+use super::{Loose, RealizeError, property};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::number::Bounds;
-use crate::model::{Clip, ClipTrack, Model, NamedSkeleton, ShapeHandle, Target, WeightRule};
+use crate::model::{
+    Clip, ClipTrack, MaterialHandle, Model, NamedSkeleton, Owner, ShapeHandle, Target, WeightRule,
+};
 use crate::motion::{
     HeatFault, Influences, Joint, MorphedBox, MorphedState, Moving, Path, ReducedTrack, Rig, Track,
     Transform, Wanted, Weights, envelope_weights, heat_weights, reduce, rigid_weights, weights_of,
 };
-use crate::scene::{Animation, Channel, Geometry, MorphTarget, Node, Scene, Skin};
+use crate::scene::{Animation, Channel, Geometry, MorphTarget, Node, PropertyChannel, Scene, Skin};
 
 /// The most samples of a motion, times what is watched.
 const MOST_SAMPLES: usize = 8_000_000;
 
 /// A default tolerance is the diagonal of the bounding box over this.
 const FINE: f64 = 1e4;
+
+/// Shapes that cannot be carried, with the reasons.
+type Refused = Vec<(ShapeHandle, RealizeError)>;
+
+/// For each change of a material that is on nothing shown its clip and the name of the material.
+type Unseen = Vec<(usize, String)>;
 
 /// Where the nodes of skeletons stand among the nodes of the scene.
 struct Places {
@@ -29,10 +37,10 @@ struct Places {
 
 /// Adds to a scene what moves it. `shapes` are those of its geometries.
 pub(super) fn add(
-    model: &Model,
+    (model, used): (&Model, &[MaterialHandle]),
     shapes: &[ShapeHandle],
     scene: &mut Scene,
-) -> Result<Vec<Loose>, Vec<(ShapeHandle, RealizeError)>> {
+) -> Result<(Vec<Loose>, Unseen), Refused> {
     let places = skeleton_nodes(model, scene);
     for (index, node) in model.nodes.iter().enumerate() {
         if let Some(socket) = node.socket {
@@ -41,15 +49,60 @@ pub(super) fn add(
     }
     skins(model, shapes, &places, scene)?;
     let rig = rig(model, &places, scene);
-    let baked: Vec<(Animation, Option<Loose>)> = model
-        .clips
-        .par_iter()
-        .enumerate()
-        .map(|(index, clip)| bake(model, &places, &rig, (index, clip)))
-        .collect();
-    let (animations, loose): (Vec<_>, Vec<_>) = baked.into_iter().unzip();
-    scene.animations = animations;
-    Ok(loose.into_iter().flatten().collect())
+    let own = &*scene;
+    let bake = |(index, clip): (usize, &Clip)| {
+        let (mut animation, loose) = bake(model, &places, &rig, (index, clip));
+        let (changes, unseen) = changes((model, used), own, clip);
+        let loose_changes = changes.iter().filter(|channel| channel.bound > channel.tolerance);
+        let told = |channel: &PropertyChannel| Loose {
+            clip: index,
+            property: Some(channel.property),
+            bound: channel.bound,
+            tolerance: channel.tolerance,
+        };
+        let loose: Vec<Loose> = loose.into_iter().chain(loose_changes.map(told)).collect();
+        animation.properties = changes;
+        let unseen: Unseen = unseen.into_iter().map(|name| (index, name)).collect();
+        (animation, loose, unseen)
+    };
+    let baked: Vec<(Animation, Vec<Loose>, Unseen)> = model.clips.par_iter().enumerate().map(bake).collect();
+    let (mut all_loose, mut all_unseen) = (Vec::new(), Vec::new());
+    for (animation, loose, unseen) in baked {
+        all_loose.extend(loose);
+        all_unseen.extend(unseen);
+        // What changes only what is not shown is no animation.
+        if !(animation.channels.is_empty() && animation.properties.is_empty()) {
+            scene.animations.push(animation);
+        }
+    }
+    Ok((all_loose, all_unseen))
+}
+
+/// What a clip changes of materials, lights and cameras, and the materials among them that nothing shows.
+fn changes(
+    (model, used): (&Model, &[MaterialHandle]),
+    scene: &Scene,
+    clip: &Clip,
+) -> (Vec<PropertyChannel>, Vec<String>) {
+    let (mut changes, mut unseen) = (Vec::new(), Vec::new());
+    for track in &clip.properties {
+        let wanted = Wanted {
+            duration: clip.duration,
+            tolerance: 0.0,
+            rate: clip.rate,
+            stops: track.course.stops(),
+            most: MOST_SAMPLES / 16,
+        };
+        let own = property::channels((model, used), scene, track, &wanted);
+        if let (true, Owner::Material(handles)) = (own.is_empty(), &track.owner) {
+            unseen.extend(handles.first().map(|handle| model.material(*handle).name.clone()));
+        }
+        changes.extend(own);
+    }
+    if clip.tracks.is_empty() {
+        property::last_to_the_end(&mut changes, clip.duration);
+    }
+    (changes, unseen)
 }
 
 fn skeleton_nodes(model: &Model, scene: &mut Scene) -> Places {
@@ -93,12 +146,7 @@ fn node(name: String, parent: Option<usize>, place: &Transform) -> Node {
     }
 }
 
-fn skins(
-    model: &Model,
-    shapes: &[ShapeHandle],
-    places: &Places,
-    scene: &mut Scene,
-) -> Result<(), Vec<(ShapeHandle, RealizeError)>> {
+fn skins(model: &Model, shapes: &[ShapeHandle], places: &Places, scene: &mut Scene) -> Result<(), Refused> {
     let mut errors = Vec::new();
     for (index, skin) in model.skins.iter().enumerate() {
         let Some(geometry) = shapes.iter().position(|shape| *shape == skin.shape) else { continue };
@@ -326,10 +374,16 @@ fn bake(
     };
     let reduced = reduce(&rig, &moving, &wanted);
     let channels = channels(&rig, &moving, reduced.tracks);
-    let loose = (reduced.bound > tolerance).then_some(Loose { clip: index, bound: reduced.bound, tolerance });
+    let loose = (reduced.bound > tolerance).then_some(Loose {
+        clip: index,
+        property: None,
+        bound: reduced.bound,
+        tolerance,
+    });
     let animation = Animation {
         name: clip.name.clone(),
         channels,
+        properties: Vec::new(),
         looped: clip.looped,
         events: clip.events.clone(),
         reach: reduced.reach,

@@ -38,7 +38,9 @@ pub(super) fn scene(
     let made = make_all(model, options, &shapes, &shown)?;
     let mut realized = assemble(model, &shapes, &shown, made);
     if !model.skeletons.is_empty() || !model.clips.is_empty() {
-        realized.loose = motion::add(model, &shapes, &mut realized.scene)?;
+        let used = used_materials(&shown, &shapes, realized.materials.iter().map(Vec::as_slice));
+        let baked = motion::add((model, &used), &shapes, &mut realized.scene)?;
+        (realized.loose, realized.unseen) = baked;
     }
     Ok(realized)
 }
@@ -88,7 +90,8 @@ fn make_all(
 }
 
 fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Morphed>) -> Realized {
-    let materials = used_materials(shown, shapes, &made);
+    let own = made.iter().map(|(made, _)| made.materials.as_slice());
+    let materials = used_materials(shown, shapes, own);
     let position = |handle: MaterialHandle| materials.iter().position(|known| *known == handle);
     let mut scene = Scene { name: model.name.clone(), ..Scene::default() };
     for (shape, material) in shown {
@@ -128,14 +131,19 @@ fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Mo
     scene.materials = materials.iter().map(|handle| model.material(*handle).clone()).collect();
     keep_used_images(model, &mut scene);
     scene.nodes = nodes(model, shown);
-    Realized { scene, shapes: shapes.to_vec(), materials: own, loose: Vec::new(), notes }
+    Realized { scene, shapes: shapes.to_vec(), materials: own, loose: Vec::new(), unseen: Vec::new(), notes }
 }
 
-fn used_materials(shown: &[Shown], shapes: &[ShapeHandle], made: &[Morphed]) -> Vec<MaterialHandle> {
+fn used_materials<'m>(
+    shown: &[Shown],
+    shapes: &[ShapeHandle],
+    own: impl Iterator<Item = &'m [Option<MaterialHandle>]>,
+) -> Vec<MaterialHandle> {
+    let made: Vec<&[Option<MaterialHandle>]> = own.collect();
     let mut used = Vec::new();
     for (shape, material) in shown {
         let geometry = shapes.iter().position(|known| known == shape).unwrap_or(0);
-        for own in &made[geometry].0.materials {
+        for own in made[geometry] {
             if let Some(handle) = material.or(*own)
                 && !used.contains(&handle)
             {

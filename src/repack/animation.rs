@@ -9,11 +9,11 @@ use serde_json::{Value, json};
 
 use super::accessor::{Elements, Source};
 use super::column::kind;
-use super::document::{Fault, Object, list_mut, whole};
+use super::document::{Fault, Object, list, list_mut, whole};
 use super::report::Errors;
 use super::stream::{Content, Kind, Output};
 use super::{described, number_of};
-use crate::packing::{Filter, exponential_step, power_of_two, quaternion};
+use crate::packing::{Filter, POINTER, exponential_step, power_of_two, quaternion};
 
 /// Bits of each part of a quaternion.
 const TURN_BITS: u8 = 16;
@@ -38,6 +38,51 @@ pub(super) fn animations(
         }
     }
     Ok(())
+}
+
+/// Takes out what changes without a node, which some loaders refuse to parse.
+pub(super) fn without_properties(root: &mut Object, notes: &mut Vec<String>) {
+    let mut dropped = 0;
+    let mut kept = Vec::new();
+    for mut animation in list(root, "animations").to_vec() {
+        let all = animation["channels"].as_array().map_or(0, Vec::len);
+        let channels = animation.get_mut("channels").and_then(Value::as_array_mut);
+        let Some(channels) = channels else { continue };
+        channels.retain(|channel| channel["target"].get("node").is_some());
+        dropped += all - channels.len();
+        // Samplers of theirs go with them.
+        let mut used: Vec<usize> = channels.iter().filter_map(|channel| whole(channel, "sampler")).collect();
+        used.sort_unstable();
+        used.dedup();
+        for channel in channels.iter_mut() {
+            let place = whole(channel, "sampler").and_then(|old| used.binary_search(&old).ok());
+            channel["sampler"] = json!(place.unwrap_or(0));
+        }
+        let empty = channels.is_empty();
+        let samplers = used.iter().map(|old| animation["samplers"][*old].clone()).collect();
+        animation["samplers"] = Value::Array(samplers);
+        if !empty {
+            kept.push(animation);
+        }
+    }
+    if dropped == 0 {
+        return;
+    }
+    notes.push(format!(
+        "{dropped} changes of materials, lights or cameras are left out: Bevy refuses files with some"
+    ));
+    if kept.is_empty() {
+        root.remove("animations");
+    } else {
+        root.insert("animations".to_owned(), Value::Array(kept));
+    }
+    for name in ["extensionsUsed", "extensionsRequired"] {
+        let Some(all) = root.get_mut(name).and_then(Value::as_array_mut) else { continue };
+        all.retain(|extension| extension != POINTER);
+        if all.is_empty() {
+            root.remove(name);
+        }
+    }
 }
 
 /// For each sampler what it moves; nothing where that is more than one thing.
@@ -76,7 +121,11 @@ fn write(
     }
     let splines = sampler["interpolation"] == "CUBICSPLINE";
     let each = if splines { 3 * times.count } else { times.count };
-    let fits = if path == "weights" { keys.count.is_multiple_of(each) } else { keys.count == each };
+    let fits = if matches!(path, "weights" | "pointer") {
+        keys.count.is_multiple_of(each)
+    } else {
+        keys.count == each
+    };
     if !fits {
         let message = format!("its accessor has {} elements for {} times", keys.count, times.count);
         return Err(Fault::new(format!("{at}/output"), message));

@@ -87,6 +87,9 @@ pub fn repacked(
     };
     let buffers = document::buffers(&root, binary, &mut counting)?;
     let mut notes = Vec::new();
+    if !options.profile.reads_properties() {
+        animation::without_properties(&mut root, &mut notes);
+    }
     let pictures = picture::read(&root, open, &mut notes)?;
     let views = document::views(&root, &buffers)?;
     let source = Source { root: &root, views: &views };

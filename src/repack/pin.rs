@@ -10,13 +10,15 @@ use std::collections::BTreeSet;
 use serde_json::Value;
 
 use super::document::{Object, as_index, list, whole};
+use crate::packing::POINTER;
 
 /// Extensions that refer to nothing, or whose references are followed here.
-const KNOWN: [&str; 14] = [
+const KNOWN: [&str; 15] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_avif",
     "EXT_texture_webp",
+    POINTER,
     "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_variants",
@@ -76,7 +78,9 @@ impl Pins {
 
     fn extensions(&mut self, root: &Object, value: &Value, looks: bool) {
         for (name, inner) in value.as_object().into_iter().flatten() {
-            if is_known(name) {
+            if name == POINTER {
+                self.property(inner);
+            } else if is_known(name) {
                 // Extensions stand in extensions, too.
                 self.walk(root, inner, looks);
             } else {
@@ -84,6 +88,13 @@ impl Pins {
                 self.refer(root, inner, (looks, false));
             }
         }
+    }
+
+    /// A property in change is looked for by its place in lists; nodes, lights and cameras keep theirs in any case.
+    fn property(&mut self, value: &Value) {
+        let pointer = value["pointer"].as_str().unwrap_or_default();
+        let list = pointer.split('/').nth(1);
+        self.lists.extend(LOOKS.into_iter().chain(["meshes"]).find(|known| Some(*known) == list));
     }
 
     /// Takes every number in a value for an index; `of_view` where its name says that it is one of a view.

@@ -10,10 +10,12 @@ use serde::Serialize;
 use super::Extent;
 use crate::geometry::number::Bounds;
 use crate::gltf::{
-    Read, ReadAnimation, ReadChannel, ReadError, ReadInfluences, ReadSkin, ReadTarget, Written,
+    Read, ReadAnimation, ReadChannel, ReadError, ReadInfluences, ReadProperty, ReadSkin, ReadTarget, Written,
+    WrittenAnimation,
 };
 use crate::model::{Model, ReachTask};
-use crate::motion::{Path, Transform, slerp};
+use crate::motion::{Path, Property, Transform, slerp};
+use crate::scene::PropertyChannel;
 
 /// Poses of each clip.
 const POSES: u32 = 9;
@@ -55,11 +57,27 @@ pub struct ClipFacts {
     pub bound: f64,
     /// The box of all vertices at the keys and at 64 times between, metres.
     pub bounds: Extent,
+    /// What changes of materials, lights and cameras, by the JSON pointers of the file.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub properties: IndexMap<String, PropertyFacts>,
     /// What joints reach, by the names of their nodes.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub reaches: IndexMap<String, ReachFacts>,
     /// The scene at some times.
     pub poses: Vec<PoseFacts>,
+}
+
+/// What is known of a property that changes.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct PropertyFacts {
+    /// Its keys.
+    pub keys: usize,
+    /// No value is further from the exact one at any sample or halfway between two: colors as a screen shows them, from 0 to
+    /// 1, others in the document's unit.
+    pub bound: f64,
+    /// What was asked for, in the same unit.
+    pub tolerance: f64,
 }
 
 /// How near a point of a joint comes to where it shall be.
@@ -102,6 +120,9 @@ pub struct PoseFacts {
     /// For each mesh with morph targets that shows in a node its weights there.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub weights: IndexMap<String, Vec<f64>>,
+    /// Properties that change, by their JSON pointers, as the file has them.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub properties: IndexMap<String, Vec<f64>>,
     /// For each mesh that joints carry or weights move some of its vertices, at the first node that shows it.
     pub vertices: IndexMap<String, Vec<PosedVertex>>,
 }
@@ -158,15 +179,18 @@ pub(super) fn motion(file: &Read<'_>, written: &Written, model: &Model) -> Resul
     let stage = Stage::new(file)?;
     let mut clips = IndexMap::new();
     for (animation, known) in file.animations()?.iter().zip(&written.animations) {
-        let duration = animation.channels.iter().filter_map(|channel| channel.times.last());
-        let duration = duration.copied().fold(0.0, f64::max);
+        let moving = animation.channels.iter().map(|channel| &channel.times);
+        let ends = moving.chain(animation.properties.iter().map(|channel| &channel.times));
+        let duration = ends.filter_map(|times| times.last()).copied().fold(0.0, f64::max);
         let time = |k: u32| duration * f64::from(k) / f64::from(POSES - 1);
         clips.insert(
             known.name.clone(),
             ClipFacts {
                 duration,
-                tracks: animation.channels.len(),
-                keys: animation.channels.iter().map(|channel| channel.times.len()).sum(),
+                tracks: animation.channels.len() + animation.properties.len(),
+                keys: animation.channels.iter().map(|channel| channel.times.len()).sum::<usize>()
+                    + animation.properties.iter().map(|channel| channel.times.len()).sum::<usize>(),
+                properties: properties(animation, known),
                 samples: known.samples,
                 tolerance: known.tolerance,
                 bound: known.bound,
@@ -271,7 +295,11 @@ impl<'a> Stage<'a> {
         };
         let weighted = (0..self.rest.len()).filter(|node| !self.weights[*node].is_empty());
         let weights = weighted.map(|node| (self.name(node), scene.weights[node].clone())).collect();
-        PoseFacts { time, nodes, weights, vertices: self.carried.iter().map(some).collect() }
+        let changed = |channel: &ReadProperty| {
+            (channel.pointer.clone(), row((&channel.times, &channel.values), channel.stepped, time))
+        };
+        let properties = animation.properties.iter().map(changed).collect();
+        PoseFacts { time, nodes, weights, properties, vertices: self.carried.iter().map(some).collect() }
     }
 
     /// The vertices of a mesh that poses tell: some of all, and of those that weights move as many again.
@@ -413,19 +441,45 @@ fn vector(numbers: &[f64]) -> DVec4 {
     DVec4::new(part(0), part(1), part(2), part(3))
 }
 
+/// What is known of the properties that a clip changes.
+fn properties(animation: &ReadAnimation, known: &WrittenAnimation) -> IndexMap<String, PropertyFacts> {
+    // What a camera without perspective sees is two properties of the file.
+    let twice = |one: &PropertyChannel| if one.property == Property::Height { 2 } else { 1 };
+    let each = known.properties.iter().flat_map(|one| std::iter::repeat_n(one, twice(one)));
+    let facts = |(read, written): (&ReadProperty, &PropertyChannel)| {
+        let PropertyChannel { bound, tolerance, .. } = *written;
+        (read.pointer.clone(), PropertyFacts { keys: read.times.len(), bound, tolerance })
+    };
+    animation.properties.iter().zip(each).map(facts).collect()
+}
+
 /// The numbers of a channel at a time.
 fn played(channel: &ReadChannel, time: f64) -> Vec<f64> {
-    let width = channel.values.len() / channel.times.len();
-    let row = |key: usize| &channel.values[key * width..(key + 1) * width];
-    let next = channel.times.partition_point(|key| *key <= time);
-    let key = next.saturating_sub(1);
-    if next == 0 || next == channel.times.len() || channel.stepped {
-        return row(key).to_vec();
-    }
-    let share = (time - channel.times[key]) / (channel.times[next] - channel.times[key]);
     if channel.path != Path::Rotation {
-        return row(key).iter().zip(row(next)).map(|(from, to)| from + (to - from) * share).collect();
+        return row((&channel.times, &channel.values), channel.stepped, time);
     }
-    let [from, to] = [key, next].map(|key| DQuat::from_vec4(vector(row(key))).normalize());
-    slerp(from, to, share).to_array().to_vec()
+    let (key, next, share) = between(&channel.times, channel.stepped, time);
+    let turn = |key: usize| DQuat::from_vec4(vector(&channel.values[4 * key..4 * key + 4])).normalize();
+    if share == 0.0 {
+        return channel.values[4 * key..4 * key + 4].to_vec();
+    }
+    slerp(turn(key), turn(next), share).to_array().to_vec()
+}
+
+/// The numbers at a time of what runs straight from key to key, or steps.
+fn row((times, values): (&[f64], &[f64]), stepped: bool, time: f64) -> Vec<f64> {
+    let width = values.len() / times.len();
+    let (key, next, share) = between(times, stepped, time);
+    let row = |key: usize| &values[key * width..(key + 1) * width];
+    row(key).iter().zip(row(next)).map(|(from, to)| from + (to - from) * share).collect()
+}
+
+/// The keys around a time, and the share of the way from the one to the other.
+fn between(times: &[f64], stepped: bool, time: f64) -> (usize, usize, f64) {
+    let next = times.partition_point(|key| *key <= time);
+    let key = next.saturating_sub(1);
+    if next == 0 || next == times.len() || stepped {
+        return (key, key, 0.0);
+    }
+    (key, next, (time - times[key]) / (times[next] - times[key]))
 }

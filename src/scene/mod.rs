@@ -11,7 +11,7 @@ mod motion;
 pub use check::{Checked, SceneError};
 pub use collider::{Body, Collider, ColliderForm, ColliderPart};
 pub use morph::MorphTarget;
-pub use motion::{Animation, Channel, Skin};
+pub use motion::{Animation, Channel, Owner, PropertyChannel, Skin};
 
 pub use crate::model::{
     AlphaMode, Camera, Filter, Image, ImageHandle, ImageKind, Lens, Light, LightKind, Material, Texture, Wrap,

@@ -51,6 +51,12 @@ pub fn srgb_to_linear(screen: f64) -> f64 {
     if screen <= 0.040_45 { screen / 12.92 } else { pow((screen + 0.055) / 1.055, 2.4) }
 }
 
+/// The number for a screen of a light, both from 0 to 1: the inverse of [`srgb_to_linear`].
+#[must_use]
+pub fn linear_to_srgb(light: f64) -> f64 {
+    if light <= 0.040_45 / 12.92 { light * 12.92 } else { 1.055 * pow(light, 1.0 / 2.4) - 0.055 }
+}
+
 /// Sine and cosine of an angle in radians.
 #[must_use]
 pub fn sin_cos(x: f64) -> (f64, f64) {

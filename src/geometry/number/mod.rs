@@ -15,8 +15,8 @@ mod whole;
 
 pub use angle::{cos_degrees, sin_cos_degrees, sin_degrees, tan_degrees};
 pub use elementary::{
-    acos, asin, asinh, atan, atan2, cbrt, cos, cosh, exp, hypot, ln, pow, sin, sin_cos, sinh, srgb_to_linear,
-    tan, tanh,
+    acos, asin, asinh, atan, atan2, cbrt, cos, cosh, exp, hypot, linear_to_srgb, ln, pow, sin, sin_cos, sinh,
+    srgb_to_linear, tan, tanh,
 };
 pub use fan::{FAN, in_fan};
 pub use noise::{noise, noise_gradient};

@@ -4,8 +4,11 @@
 
 use glam::{DQuat, DVec3, DVec4};
 
+use gltf::accessor::Dimensions;
+
 use super::{Data, GltfFault, Node, Place};
 use crate::geometry::number::{acos, sin};
+use crate::packing::PointerChannel;
 
 /// A clip.
 #[derive(Clone, Debug)]
@@ -14,6 +17,21 @@ pub struct Clip {
     pub name: String,
     /// What it moves.
     pub channels: Vec<Channel>,
+    /// What else it changes (`KHR_animation_pointer`).
+    pub properties: Vec<PropertyChannel>,
+}
+
+/// Numbers of the document that change.
+#[derive(Clone, Debug)]
+pub struct PropertyChannel {
+    /// The JSON pointer.
+    pub pointer: String,
+    /// Seconds at which its keys stand, in order.
+    pub times: Vec<f32>,
+    /// Between the keys.
+    pub steps: Steps,
+    /// As many numbers for each key as the property has.
+    pub values: Vec<f32>,
 }
 
 /// One thing that moves.
@@ -66,19 +84,19 @@ pub enum ChannelPath {
     Weights,
 }
 
-pub(super) fn read(data: &Data<'_>, own: &gltf::Animation<'_>) -> Result<Clip, GltfFault> {
+pub(super) fn read(
+    data: &Data<'_>,
+    own: &gltf::Animation<'_>,
+    pointers: &[PointerChannel],
+) -> Result<Clip, GltfFault> {
     use gltf::animation::Property;
     let channels: Result<Vec<Channel>, GltfFault> = own
         .channels()
         .map(|channel| {
             let sampler = channel.sampler();
-            let times = data.numbers::<1>(&sampler.input())?;
             let output = sampler.output();
-            let steps = match sampler.interpolation() {
-                gltf::animation::Interpolation::Step => Steps::Step,
-                gltf::animation::Interpolation::Linear => Steps::Linear,
-                gltf::animation::Interpolation::CubicSpline => Steps::Cubic,
-            };
+            let steps = steps(&sampler);
+            let times = times(data, &sampler)?;
             let track = match channel.target().property() {
                 Property::Translation => Track::Translation(data.numbers(&output)?),
                 Property::Rotation => Track::Rotation(data.numbers(&output)?),
@@ -100,15 +118,66 @@ pub(super) fn read(data: &Data<'_>, own: &gltf::Animation<'_>) -> Result<Clip, G
             if !fits {
                 return Err(GltfFault::Accessor(output.index()));
             }
-            let times: Vec<f32> = times.into_iter().map(|[time]| time).collect();
-            let ordered = times.is_sorted_by(|a, b| a < b) && times.iter().all(|time| time.is_finite());
-            if !ordered || times.first().is_some_and(|first| *first < 0.0) {
-                return Err(GltfFault::Times(sampler.input().index()));
-            }
             Ok(Channel { node: channel.target().node().index(), times, steps, track })
         })
         .collect();
-    Ok(Clip { name: own.name().unwrap_or_default().to_owned(), channels: channels? })
+    let properties: Result<Vec<PropertyChannel>, GltfFault> = pointers
+        .iter()
+        .filter(|pointer| pointer.animation == own.index())
+        .map(|pointer| property(data, own, pointer))
+        .collect();
+    let name = own.name().unwrap_or_default().to_owned();
+    Ok(Clip { name, channels: channels?, properties: properties? })
+}
+
+fn property(
+    data: &Data<'_>,
+    own: &gltf::Animation<'_>,
+    pointer: &PointerChannel,
+) -> Result<PropertyChannel, GltfFault> {
+    let missing = || GltfFault::Document(format!("sampler {} does not exist", pointer.sampler));
+    let sampler = own.samplers().nth(pointer.sampler).ok_or_else(missing)?;
+    let (times, steps, output) = (times(data, &sampler)?, steps(&sampler), sampler.output());
+    let values = match output.dimensions() {
+        Dimensions::Scalar => data.numbers::<1>(&output)?.into_flattened(),
+        Dimensions::Vec2 => data.numbers::<2>(&output)?.into_flattened(),
+        Dimensions::Vec3 => data.numbers::<3>(&output)?.into_flattened(),
+        Dimensions::Vec4 => data.numbers::<4>(&output)?.into_flattened(),
+        _ => return Err(GltfFault::Accessor(output.index())),
+    };
+    let keys = times.len() * if steps == Steps::Cubic { 3 } else { 1 };
+    if keys == 0 || values.is_empty() || values.len() % keys != 0 {
+        return Err(GltfFault::Accessor(output.index()));
+    }
+    Ok(PropertyChannel { pointer: pointer.path.clone(), times, steps, values })
+}
+
+fn steps(sampler: &gltf::animation::Sampler<'_>) -> Steps {
+    match sampler.interpolation() {
+        gltf::animation::Interpolation::Step => Steps::Step,
+        gltf::animation::Interpolation::Linear => Steps::Linear,
+        gltf::animation::Interpolation::CubicSpline => Steps::Cubic,
+    }
+}
+
+/// The times of keys, which follow each other from 0 on.
+fn times(data: &Data<'_>, sampler: &gltf::animation::Sampler<'_>) -> Result<Vec<f32>, GltfFault> {
+    let times = data.numbers::<1>(&sampler.input())?.into_flattened();
+    let ordered = times.is_sorted_by(|a, b| a < b) && times.iter().all(|time| time.is_finite());
+    if !ordered || times.first().is_some_and(|first| *first < 0.0) {
+        return Err(GltfFault::Times(sampler.input().index()));
+    }
+    Ok(times)
+}
+
+impl PropertyChannel {
+    /// Its numbers at a time, in seconds.
+    #[must_use]
+    pub fn at(&self, time: f64) -> Vec<f64> {
+        let at = Moment::new(&self.times, time, self.steps);
+        let width = self.values.len() / (self.times.len() * if self.steps == Steps::Cubic { 3 } else { 1 });
+        (0..width).map(|k| at.value(|key| f64::from(self.values[key * width + k]))).collect()
+    }
 }
 
 impl Channel {
@@ -142,7 +211,8 @@ impl Clip {
     #[must_use]
     pub fn duration(&self) -> f64 {
         let last = |channel: &Channel| channel.times.last().map_or(0.0, |time| f64::from(*time));
-        self.channels.iter().map(last).fold(0.0, f64::max)
+        let changed = self.properties.iter().filter_map(|channel| channel.times.last());
+        self.channels.iter().map(last).chain(changed.map(|time| f64::from(*time))).fold(0.0, f64::max)
     }
 
     /// Puts nodes where they are at a time, in seconds; before the first key and after the last they wait.

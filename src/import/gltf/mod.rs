@@ -20,13 +20,13 @@ use gltf::json::validation::Validate as _;
 use thiserror::Error;
 
 pub(crate) use accessor::{Data, little, number, size};
-pub use clip::{Channel, ChannelPath, Clip, Steps, Track};
+pub use clip::{Channel, ChannelPath, Clip, PropertyChannel, Steps, Track};
 pub use geometry::{Weighted, read, read_weighted};
 pub(crate) use mesh::read as mesh;
 pub use mesh::{Mesh, Part, Target};
 pub use rig::{Rig, RigJoint};
 
-use crate::packing::{UnpackError, unpacked};
+use crate::packing::{PointerChannel, UnpackError, unpacked, without_pointers};
 
 /// A node.
 #[derive(Clone, Debug)]
@@ -143,6 +143,8 @@ pub struct GltfFile {
     buffers: Vec<Vec<u8>>,
     /// For each node its parent.
     parents: Vec<Option<usize>>,
+    /// Channels of animations that point at properties.
+    pointers: Vec<PointerChannel>,
 }
 
 /// Opens a file; `open` reads others by their paths from it.
@@ -158,8 +160,12 @@ pub fn open(bytes: &[u8], open: &mut dyn FnMut(&str) -> Option<Vec<u8>>) -> Resu
     } else {
         (Cow::Borrowed(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)), None)
     };
-    let mut root: gltf::json::Root =
-        serde_json::from_slice(&json).map_err(|error| GltfFault::Document(error.to_string()))?;
+    let parsed = serde_json::from_slice(&json).map(|root| (root, Vec::new())).or_else(|error| {
+        let (rest, pointers) = without_pointers(&json).ok_or(error)?;
+        Ok((serde_json::from_slice(&rest)?, pointers))
+    });
+    let (mut root, pointers): (gltf::json::Root, Vec<PointerChannel>) =
+        parsed.map_err(|error: serde_json::Error| GltfFault::Document(error.to_string()))?;
     if let Some(unknown) = root.extensions_required.iter().find(|name| !KNOWN.contains(&name.as_str())) {
         return Err(GltfFault::Extension(unknown.clone()));
     }
@@ -186,7 +192,8 @@ pub fn open(bytes: &[u8], open: &mut dyn FnMut(&str) -> Option<Vec<u8>>) -> Resu
         }
         buffers.push(data);
     }
-    Ok(GltfFile { document: gltf::Document::from_json_without_validation(root), buffers, parents })
+    let document = gltf::Document::from_json_without_validation(root);
+    Ok(GltfFile { document, buffers, parents, pointers })
 }
 
 impl GltfFile {
@@ -216,7 +223,7 @@ impl GltfFile {
     /// When one of them is broken.
     pub fn clips(&self) -> Result<Vec<Clip>, GltfFault> {
         let data = self.data();
-        self.document.animations().map(|own| clip::read(&data, &own)).collect()
+        self.document.animations().map(|own| clip::read(&data, &own, &self.pointers)).collect()
     }
 
     /// For each node the map from it to the scene.

@@ -461,6 +461,15 @@ codes! {
     AimCircle = "K1070";
     /// a node is where it looks
     AimAtItself = "K1071";
+
+    /// an engine that reads no properties in change
+    EngineProperties = "K1072";
+    /// something has no property that changes
+    NoProperty = "K1073";
+    /// a property leaves what it may be
+    PropertyRange = "K1074";
+    /// a material changes that nothing shows
+    UnseenChange = "K1075";
 }
 
 impl serde::Serialize for Code {

@@ -568,4 +568,16 @@ examples! {
     AimAtItself: "From a place there is no direction to that place itself.",
         "[shape.a.sphere]\nradius = 1\n[node.n]\nshape = \"a\"\naim = [0, 0, 0]" =>
         "[shape.a.sphere]\nradius = 1\n[node.n]\nshape = \"a\"\naim = [0, 0, 1]";
+    EngineProperties: "Properties of materials, lights and cameras change by the extension `KHR_animation_pointer`. A loader that does not know it is to leave such tracks out; Bevy's opens no file that has one, so that the profile `bevy` leaves them out. A warning.",
+        "[output]\nprofiles = [\"bevy\"]\n[shape.a]\nmaterial = \"m\"\n[shape.a.box]\nsize = [1, 1, 1]\n[material.m]\ncolor = \"#ff0000\"\n[[clip.c.track]]\nmaterial = \"m\"\npath = \"roughness\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 1 }]" =>
+        "[shape.a]\nmaterial = \"m\"\n[shape.a.box]\nsize = [1, 1, 1]\n[material.m]\ncolor = \"#ff0000\"\n[[clip.c.track]]\nmaterial = \"m\"\npath = \"roughness\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 1 }]";
+    NoProperty: "A track changes a property that what it names has: a node's light or camera has some, a material others, of which the strength of a texture is one only where there is that texture. Joints have none.",
+        "[shape.a]\nmaterial = \"m\"\n[shape.a.box]\nsize = [1, 1, 1]\n[material.m]\ncolor = \"#ff0000\"\n[[clip.c.track]]\nmaterial = \"m\"\npath = \"normal-scale\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 1 }]" =>
+        "[shape.a]\nmaterial = \"m\"\n[shape.a.box]\nsize = [1, 1, 1]\n[material.m]\ncolor = \"#ff0000\"\n[[clip.c.track]]\nmaterial = \"m\"\npath = \"roughness\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 1 }]";
+    PropertyRange: "Colors, opacity, metal and roughness are from 0 to 1, what lights and cameras have is not negative. Between keys of a cubic a value may go beyond them. With `limits = \"clamp\"` in the clip it is brought into its range instead.",
+        "[shape.a]\nmaterial = \"m\"\n[shape.a.box]\nsize = [1, 1, 1]\n[material.m]\ncolor = \"#ff0000\"\n[[clip.c.track]]\nmaterial = \"m\"\npath = \"roughness\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 2 }]" =>
+        "[shape.a]\nmaterial = \"m\"\n[shape.a.box]\nsize = [1, 1, 1]\n[material.m]\ncolor = \"#ff0000\"\n[[clip.c.track]]\nmaterial = \"m\"\npath = \"roughness\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 1 }]";
+    UnseenChange: "The material of a track is on nothing that is shown, so that nothing is written of it. A warning.",
+        "[shape.a.box]\nsize = [1, 1, 1]\n[material.m]\ncolor = \"#ff0000\"\n[[clip.c.track]]\nmaterial = \"m\"\npath = \"roughness\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 1 }]" =>
+        "[shape.a]\nmaterial = \"m\"\n[shape.a.box]\nsize = [1, 1, 1]\n[material.m]\ncolor = \"#ff0000\"\n[[clip.c.track]]\nmaterial = \"m\"\npath = \"roughness\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 1 }]";
 }

@@ -10,11 +10,12 @@ use crate::language::spec::construct::{choices, table};
 use crate::language::spec::formula::Formula;
 use crate::language::spec::import::{FilePath, Up};
 use crate::language::spec::kind::choice;
+use crate::language::spec::material::Color;
 use crate::language::spec::morph::MorphName;
 use crate::language::spec::point::read_numbers;
 use crate::language::spec::reach::Reach;
 use crate::language::spec::reader::{Read, Reader};
-use crate::language::spec::reference::{CurveReference, NodeName, SkeletonName};
+use crate::language::spec::reference::{CurveReference, MaterialName, NodeName, SkeletonName};
 use crate::language::spec::scalar::finite;
 use crate::language::spec::schema::{Schemas, any_of, numbers, one_of_words, or_expression};
 use crate::language::spec::spanned::Sp;
@@ -39,7 +40,7 @@ table! {
         tolerance: Option<Sp<f64>> => Check::above(0.0);
         /// Samples a second of the exact motion, to begin with.
         rate: Sp<f64> = 60.0 => Check::within(1.0, 1000.0);
-        /// What becomes of poses beyond the limits of joints.
+        /// What becomes of poses beyond the limits of joints, and of properties beyond what they may be.
         limits: Sp<LimitRule> = LimitRule::Error;
         /// What moves, as `[[clip.NAME.track]]`.
         track: Vec<Sp<ClipTrack>> = Vec::new();
@@ -69,18 +70,20 @@ table! {
 }
 
 choices! {
-    /// What becomes of poses beyond the limits of joints.
+    /// What becomes of poses beyond the limits of joints, and of properties beyond what they may be.
     LimitRule {
         /// They are errors.
         Error = "error";
-        /// Each angle is brought into its range.
+        /// Each angle or number is brought into its range.
         Clamp = "clamp";
     }
 }
 
 table! {
     /// The motion of one part of a node or joint, on top of its rest: translations are added (for joints in the rest frame),
-    /// rotations are applied before the rest's own, scales are multiplied. Or the weight of a state of a shape.
+    /// rotations are applied before the rest's own, scales are multiplied. Or the weight of a state of a shape. Or a property of a
+    /// material, or of the light or camera of a node, in place of the written one; such tracks need players that know
+    /// `KHR_animation_pointer`, which is used and not required, and Bevy, which opens no file with them, gets none.
     "track" pub ClipTrack {
         /// The node.
         node: Option<Sp<NodeName>>;
@@ -90,11 +93,14 @@ table! {
         chain: Option<Sp<String>>;
         /// The state of a shape whose weight moves, `"SHAPE.TARGET"`: at every node that shows the shape, or at `node` alone.
         morph: Option<Sp<MorphName>>;
-        /// The part that moves. A track `along` a curve needs none, nor has a weight one.
+        /// The material of which a property changes.
+        material: Option<Sp<MaterialName>>;
+        /// The part that moves, or the property that changes. A track of a node `along` a curve needs none, nor has a weight one.
         path: Option<Sp<MotionPath>>;
         /// Values at times, each `{ at = seconds, value = ... }`. Translations: three numbers in the document's unit, or one
         /// with `axis`. Rotations: degrees with `axis`; three angles in degrees; or a quaternion `[x, y, z, w]`. Scales: a
-        /// number or three. Weights: a number. With `along`: the share of the curve's length.
+        /// number or three. Weights: a number. Colors: `"#rrggbb"`, or linear red, green and blue. Other properties: a number, as
+        /// where they are written. With `along`: the share of the curve's length.
         keys: Vec<MotionKey> = Vec::new();
         /// How values go from key to key.
         between: Sp<Between> = Between::Linear;
@@ -109,7 +115,8 @@ table! {
         order: Option<Sp<AngleOrder>>;
         /// What is between keys of angles.
         way: Sp<RotationWay> = RotationWay::Angles;
-        /// A curve that a node is moved along by its length. Without keys, formula or speed: once, at constant speed.
+        /// A curve that a node is moved along by its length, or a color, whose red, green and blue are then its x, y and z.
+        /// Without keys, formula or speed: once, at constant speed.
         along: Option<CurveReference>;
         /// Whether a node that is moved along a curve turns with it: its z looks along the curve, its y is up. The frames turn no
         /// more than the curve makes them.
@@ -123,7 +130,9 @@ table! {
 }
 
 choices! {
-    /// Which part of a node or joint moves.
+    /// Which part of a node or joint moves, or which property of a material, or of a node's light or camera, changes. What is
+    /// written differs by no more than half a step of a screen's 8 bits from colors, opacity and shares from 0 to 1, a hundredth
+    /// of a degree from angles, and a thousandth of its greatest from everything else.
     MotionPath {
         /// Where it is.
         Translation = "translation";
@@ -131,6 +140,30 @@ choices! {
         Rotation = "rotation";
         /// Its size.
         Scale = "scale";
+        /// The color of a material, with four numbers its opacity too, or of a node's light.
+        Color = "color";
+        /// The opacity of a material.
+        Alpha = "alpha";
+        /// The color of the light that a material gives off.
+        Emissive = "emissive";
+        /// How metallic a material is.
+        Metallic = "metallic";
+        /// How rough a material is.
+        Roughness = "roughness";
+        /// The strength of a material's normal texture.
+        NormalScale = "normal-scale";
+        /// The strength of a material's occlusion texture.
+        OcclusionStrength = "occlusion-strength";
+        /// The opacity below which nothing is there, of a material with `alpha = "mask"`.
+        AlphaCutoff = "alpha-cutoff";
+        /// The strength of a node's light.
+        Intensity = "intensity";
+        /// How far a node's light shines.
+        Range = "range";
+        /// What a node's camera sees upright, degrees.
+        FieldOfView = "field-of-view";
+        /// What a node's camera without perspective sees upright.
+        Height = "height";
     }
 }
 
@@ -179,7 +212,7 @@ table! {
     "key" pub MotionKey {
         /// Seconds from the start of the clip.
         at: Sp<f64> => Check::at_least(0.0).up_to(LONGEST);
-        /// The value: a number, or a list of three or four.
+        /// The value: a number, a list of three or four, or a color.
         value: Sp<KeyValue>;
         /// How fast the value changes there, in its unit a second, between "cubic" keys; by the neighbours when it is not
         /// written.
@@ -197,28 +230,45 @@ table! {
     }
 }
 
-/// One number, or three or four.
+/// One number, or three or four, or a color.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeyValue {
     /// The numbers; those that are not written are 0.
     pub numbers: DVec4,
     /// How many are written.
     pub count: usize,
+    /// Whether they are written as a color.
+    pub is_color: bool,
 }
 
 impl Read for KeyValue {
     fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
         if value.number().is_some() {
-            return finite(value, reader)
-                .map(|one| Self { numbers: DVec4::new(one, 0.0, 0.0, 0.0), count: 1 });
+            return finite(value, reader).map(|one| Self {
+                numbers: DVec4::new(one, 0.0, 0.0, 0.0),
+                count: 1,
+                is_color: false,
+            });
         }
-        let read = read_numbers(value, 3, 4, "a number or a list of 3 or 4 numbers", reader)?;
+        if let Data::String(text) = &value.data
+            && text.starts_with('#')
+        {
+            let count = if text.len() > 7 { 4 } else { 3 };
+            return Color::read(value, reader).map(|color| Self {
+                numbers: DVec4::from_array(color.linear),
+                count,
+                is_color: true,
+            });
+        }
+        let read = read_numbers(value, 3, 4, "a number, a list of 3 or 4 numbers, or a color", reader)?;
         let last = read.get(3).copied().unwrap_or(0.0);
-        Some(Self { numbers: DVec4::new(read[0], read[1], read[2], last), count: read.len() })
+        let numbers = DVec4::new(read[0], read[1], read[2], last);
+        Some(Self { numbers, count: read.len(), is_color: false })
     }
 
     fn schema(_: &mut Schemas) -> Json {
-        any_of(vec![or_expression("number"), numbers(3, 4)])
+        let color = json!({ "type": "string", "pattern": "^#([0-9a-fA-F]{6}|[0-9a-fA-F]{8})$" });
+        any_of(vec![or_expression("number"), numbers(3, 4), color])
     }
 }
 
@@ -293,6 +343,7 @@ impl ClipTrack {
             self.morph.as_ref().map(|morph| ("morph", morph.span)),
             self.joint.as_ref().map(|joint| ("joint", joint.span)),
             self.chain.as_ref().map(|chain| ("chain", chain.span)),
+            self.material.as_ref().map(|material| ("material", material.span)),
         ];
         let laws = [
             self.keys.first().map(|key| ("keys", key.at.span)),
@@ -300,8 +351,12 @@ impl ClipTrack {
             self.curve.as_ref().map(|curve| ("curve", curve.span())),
             self.speed.first().map(|key| ("speed", key.at.span)),
         ];
-        let targeted =
-            one_of(&targets, ("what moves", "`node`, `joint`, `chain` or `morph`"), (table, false), reader);
+        let targeted = one_of(
+            &targets,
+            ("what moves", "`node`, `joint`, `chain`, `morph` or `material`"),
+            (table, false),
+            reader,
+        );
         let free = self.along.is_some();
         let ruled = one_of(&laws, ("how it moves", "`keys`, `formula` or `curve`"), (table, free), reader);
         let whole = [
@@ -318,12 +373,20 @@ impl ClipTrack {
             reader.report(report);
             return false;
         }
+        if let Some(report) = self.misplaced() {
+            reader.report(report);
+            return false;
+        }
         let report = match (&self.along, &self.path) {
             (None, None) if self.morph.is_some() => return targeted && ruled,
             (None, None) => Diagnostic::error(Code::MissingField, "missing field `path` of track")
                 .at(table, "needs `path`"),
-            (Some(along), Some(path)) if path.value != MotionPath::Translation => {
-                Diagnostic::error(Code::Conflict, "a track along a curve moves the translation")
+            (Some(_), None) if self.material.is_some() => {
+                Diagnostic::error(Code::MissingField, "missing field `path` of track")
+                    .at(table, "needs `path`: \"color\" or \"emissive\"")
+            }
+            (Some(along), Some(path)) if !path.value.runs_along() => {
+                Diagnostic::error(Code::Conflict, "a track along a curve moves the translation or a color")
                     .at(path.span, "cannot stand beside `along`")
                     .also(along.span(), "the curve")
             }
@@ -331,6 +394,58 @@ impl ClipTrack {
         };
         reader.report(report);
         false
+    }
+
+    /// What stands beside a path, a target or a law with which it says nothing.
+    fn misplaced(&self) -> Option<Diagnostic> {
+        if let (Some(key), None) = (self.speed.first(), &self.along) {
+            let report =
+                Diagnostic::error(Code::Conflict, "a speed is one along a curve, and this track has none")
+                    .at(key.at.span, "along what?");
+            return Some(report.help("write `along`, or `keys`, `formula` or `curve` in place of `speed`"));
+        }
+        let path = self.path.as_ref()?;
+        let is_property = path.value.is_property();
+        let other = [
+            self.joint.as_ref().map(|joint| ("a joint", joint.span)),
+            self.chain.as_ref().map(|chain| ("a chain", chain.span)),
+        ];
+        if let (true, Some((what, span))) = (is_property, other.into_iter().flatten().next()) {
+            let message = format!("{what} has no `{}`", path.value.text());
+            let report = Diagnostic::error(Code::NoProperty, message).at(path.span, "no such part");
+            return Some(report.also(span, "it has translation, rotation and scale"));
+        }
+        if let (false, Some(material)) = (is_property, &self.material) {
+            let message = format!("a material has no `{}`", path.value.text());
+            let report =
+                Diagnostic::error(Code::NoProperty, message).at(path.span, "materials stay in place");
+            return Some(
+                report.also(material.span, "the material").help("write `node` in place of `material`"),
+            );
+        }
+        let turning = [
+            self.axis.as_ref().map(|axis| ("axis", axis.span)),
+            self.order.as_ref().map(|order| ("order", order.span)),
+            self.up.as_ref().map(|up| ("up", up.span)),
+        ];
+        let (field, span) = turning.into_iter().flatten().next().filter(|_| is_property)?;
+        let message = format!("`{}` is no motion and has no `{field}`", path.value.text());
+        let report = Diagnostic::error(Code::Conflict, message).at(span, "cannot stand here");
+        Some(report.also(path.span, "the property"))
+    }
+}
+
+impl MotionPath {
+    /// Whether it is no part of a node or joint, but a property of a material, light or camera.
+    #[must_use]
+    pub const fn is_property(self) -> bool {
+        !matches!(self, Self::Translation | Self::Rotation | Self::Scale)
+    }
+
+    /// Whether it can go along a curve.
+    #[must_use]
+    pub const fn runs_along(self) -> bool {
+        matches!(self, Self::Translation | Self::Color | Self::Emissive)
     }
 }
 

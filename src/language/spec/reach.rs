@@ -121,6 +121,7 @@ fn still(path: MotionPath) -> ClipTrack {
         node: None,
         joint: None,
         chain: None,
+        material: None,
         morph: None,
         path: Some(path.into()),
         keys: Vec::new(),

@@ -5,11 +5,13 @@
 //! and named in `notes`.
 //! No promise: this is not the reader of the report, which reads what it measures bit by bit (`gltf::read`).
 
+mod change;
 mod level;
 mod texture;
 
 use glam::{DAffine2, DMat2, DVec2};
 
+pub(super) use change::changed;
 pub use texture::{Texture, Wrap};
 
 use crate::geometry::number::{floor_count, sin_cos, single};
@@ -60,6 +62,8 @@ pub struct Material {
     pub occlusion_map: Option<(Map, f32)>,
     /// Linear light that it sends out.
     pub emissive: [f32; 3],
+    /// What that is multiplied by, and is already (`KHR_materials_emissive_strength`).
+    pub emissive_strength: f32,
     /// The picture that multiplies it.
     pub emissive_map: Option<Map>,
     /// What opacity does.
@@ -106,7 +110,7 @@ pub fn read(bytes: &[u8]) -> Result<Asset, GltfFault> {
         document.meshes().map(|mesh| gltf::mesh(&data, &mesh, &mut notes)).collect();
     let mut materials: Vec<Material> = document.materials().map(|own| material(&own)).collect();
     materials.push(Material::default());
-    let asset = Asset {
+    let mut asset = Asset {
         nodes: file.nodes(),
         roots: file.roots(),
         meshes: meshes?,
@@ -116,6 +120,7 @@ pub fn read(bytes: &[u8]) -> Result<Asset, GltfFault> {
         clips: file.clips()?,
         notes,
     };
+    asset.notes.extend(change::untold(&asset));
     check_levels(&asset)?;
     Ok(asset)
 }
@@ -172,6 +177,7 @@ fn material(own: &::gltf::Material<'_>) -> Material {
             (map(light.texture().index(), light.tex_coord(), place), light.strength())
         }),
         emissive: own.emissive_factor().map(|part| part * single(strength)),
+        emissive_strength: single(strength),
         emissive_map: own.emissive_texture().map(of),
         cutoff: match own.alpha_mode() {
             ::gltf::material::AlphaMode::Opaque => Cutoff::Opaque,
@@ -195,6 +201,7 @@ impl Default for Material {
             normal_map: None,
             occlusion_map: None,
             emissive: [0.0; 3],
+            emissive_strength: 1.0,
             emissive_map: None,
             cutoff: Cutoff::Opaque,
             unlit: false,

@@ -1,8 +1,8 @@
 //! The proof that skins and motions can be written.
 
 use super::SceneError;
-use crate::motion::{Influences, Path};
-use crate::scene::{Animation, Channel, Geometry, Scene, Skin};
+use crate::motion::{Influences, Path, Property};
+use crate::scene::{AlphaMode, Animation, Channel, Geometry, Lens, Owner, PropertyChannel, Scene, Skin};
 
 pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
     for skin in &scene.skins {
@@ -59,7 +59,7 @@ fn check_skin(scene: &Scene, skin: &Skin) -> Result<(), &'static str> {
 }
 
 fn check_animation(scene: &Scene, animation: &Animation) -> Result<(), &'static str> {
-    if animation.channels.is_empty() {
+    if animation.channels.is_empty() && animation.properties.is_empty() {
         return Err("no channel");
     }
     let mut moved: Vec<(usize, Path)> =
@@ -68,7 +68,67 @@ fn check_animation(scene: &Scene, animation: &Animation) -> Result<(), &'static 
     if moved.windows(2).any(|pair| pair[0] == pair[1]) {
         return Err("one part of a node in motion twice");
     }
+    let mut changed: Vec<_> =
+        animation.properties.iter().map(|channel| (channel.owner, channel.property)).collect();
+    changed.sort_unstable();
+    if changed.windows(2).any(|pair| pair[0] == pair[1]) {
+        return Err("one property in change twice");
+    }
+    animation.properties.iter().try_for_each(|channel| check_property(scene, channel))?;
     animation.channels.iter().try_for_each(|channel| check_channel(scene, channel))
+}
+
+fn check_property(scene: &Scene, channel: &PropertyChannel) -> Result<(), &'static str> {
+    if !has(scene, channel) {
+        return Err("a change of what does not have that property");
+    }
+    let (least, most) = channel.property.range();
+    // Lengths are held against their range in the document's unit, not in metres.
+    let least = if matches!(channel.property, Property::Range | Property::Height) { 0.0 } else { least };
+    let within = |value: &f64| value.is_finite() && *value >= least - 1e-6 && *value <= most + 1e-6;
+    if !channel.values.iter().all(within) {
+        return Err("a value that a property cannot have");
+    }
+    check_keys(&channel.times, &channel.values, channel.property.width())
+}
+
+/// Whether something has the property that changes.
+fn has(scene: &Scene, channel: &PropertyChannel) -> bool {
+    match channel.owner {
+        Owner::Material(material) => {
+            scene.materials.get(material).is_some_and(|own| match channel.property {
+                Property::Color | Property::Emissive | Property::Metallic | Property::Roughness => true,
+                Property::NormalScale => own.normal_texture.is_some(),
+                Property::OcclusionStrength => own.occlusion_texture.is_some(),
+                Property::AlphaCutoff => matches!(own.alpha, AlphaMode::Mask { .. }),
+                _ => false,
+            })
+        }
+        Owner::Node(node) => scene.nodes.get(node).is_some_and(|own| {
+            let lens = own.camera.map(|camera| camera.lens);
+            match channel.property {
+                Property::LightColor | Property::Intensity => own.light.is_some(),
+                Property::Range => own.light.is_some_and(|light| light.range.is_some()),
+                Property::FieldOfView => matches!(lens, Some(Lens::Perspective { .. })),
+                Property::Height => matches!(lens, Some(Lens::Parallel { .. })),
+                _ => false,
+            }
+        }),
+    }
+}
+
+/// Times that increase, with so many finite numbers each.
+fn check_keys(times: &[f64], values: &[f64], width: usize) -> Result<(), &'static str> {
+    if times.is_empty() || times.len() * width != values.len() {
+        return Err("another number of values than times");
+    }
+    // They are written in single precision, where they must still increase.
+    let times: Vec<f32> = times.iter().map(|time| crate::geometry::number::single(*time)).collect();
+    if times[0] < 0.0 || !times.windows(2).all(|pair| pair[0] < pair[1]) {
+        return Err("times that do not increase from 0");
+    }
+    let limit = f64::from(f32::MAX);
+    if values.iter().all(|value| value.abs() <= limit) { Ok(()) } else { Err("a value that is not finite") }
 }
 
 /// How many numbers a channel has for each time.
@@ -92,18 +152,7 @@ fn check_channel(scene: &Scene, channel: &Channel) -> Result<(), &'static str> {
         return Err("a node that does not exist");
     }
     let width = width(scene, channel)?;
-    if channel.times.is_empty() || channel.times.len() * width != channel.values.len() {
-        return Err("another number of values than times");
-    }
-    // They are written in single precision, where they must still increase.
-    let times: Vec<f32> = channel.times.iter().map(|time| crate::geometry::number::single(*time)).collect();
-    if times[0] < 0.0 || !times.windows(2).all(|pair| pair[0] < pair[1]) {
-        return Err("times that do not increase from 0");
-    }
-    let limit = f64::from(f32::MAX);
-    if !channel.values.iter().all(|value| value.abs() <= limit) {
-        return Err("a value that is not finite");
-    }
+    check_keys(&channel.times, &channel.values, width)?;
     let unit = |value: &[f64]| (value.iter().map(|part| part * part).sum::<f64>() - 1.0).abs() < 1e-5;
     if channel.path == Path::Rotation && !channel.values.chunks(width).all(unit) {
         return Err("a rotation that is not of unit length");
