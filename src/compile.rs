@@ -10,6 +10,7 @@ mod lod;
 mod motion;
 mod notice;
 mod origin;
+mod planned;
 mod profile;
 mod solid;
 mod state;
@@ -18,6 +19,7 @@ mod subdivide;
 use file::{file_name, same_file};
 use notice::noticed;
 pub use origin::Origins;
+pub use planned::{estimated_memory, outputs};
 pub(crate) use profile::profile_of;
 use profile::profiles;
 
@@ -34,7 +36,7 @@ use crate::language::source::{Files, Span};
 use crate::language::spec::{Assertion, Spec};
 use crate::model::{Model, ShapeHandle};
 use crate::optimize::{Order, Rounding};
-use crate::realize::{self, Keep, Memo, RealizeError, Realized};
+use crate::realize::{self, Keep, Memo, RealizeError, Realized, WorkLog};
 use crate::report::{About, Report};
 use crate::scene::SceneError;
 use crate::{gltf, optimize, report, scene};
@@ -60,6 +62,8 @@ pub struct Options {
     pub deviations: bool,
     /// Where realized shapes are kept from one bake to the next.
     pub keep: Option<Arc<dyn Keep>>,
+    /// Where it is noted what each shape took.
+    pub log: Option<Arc<WorkLog>>,
     /// For whom files are; where empty, for whom the document says, and without that, for all.
     pub profiles: Vec<Profile>,
 }
@@ -127,7 +131,7 @@ pub fn compile_profiles(
     if let Some(same) = same_file(document, &spec, &profiles) {
         return Err(fail(vec![same]));
     }
-    let memo = options.keep.as_deref().map(|keep| Memo::new(&built.model, keep));
+    let memo = Memo::new(&built.model, options.keep.as_deref(), options.log.as_deref());
     let made = Made { document, spec: &spec, built: &built, options, memo: memo.as_ref() };
     // One scene for floats, and one for whole numbers.
     let mut scenes: [Option<Surfaces>; 2] = [None, None];
@@ -151,25 +155,6 @@ pub fn compile_profiles(
         all.extend(made.files(surfaces, *profile, std::mem::take(&mut warnings)).map_err(fail)?);
     }
     Ok(all)
-}
-
-/// The names of the files that a document certainly becomes, without making them; levels of detail in files of their own are
-/// not among them, for some may turn out to be none. All files that a bake would read are read.
-///
-/// # Errors
-/// Everything that is wrong with the document before its surfaces are cut.
-pub fn outputs(
-    document: &Document,
-    files: &dyn Files,
-    options: &Options,
-) -> Result<Vec<String>, Diagnostics> {
-    let (spec, _) = document.spec(options.variant.as_deref(), &options.overrides)?;
-    state::model(document, &spec, files, options)?;
-    let profiles = profiles(&spec, options);
-    if let Some(same) = same_file(document, &spec, &profiles) {
-        return Err(document.diagnostics(vec![same]));
-    }
-    Ok(profiles.into_iter().map(|profile| file_name(options, profile, 0)).collect())
 }
 
 /// What all files of an asset are made of.

@@ -67,6 +67,11 @@ impl Manifest {
         self.entries.iter().find(|entry| entry.inputs.iter().all(|input| same(&input.path, input.hash)))
     }
 
+    /// The set that was added last.
+    pub(super) fn newest(&self) -> Option<&Entry> {
+        self.entries.first()
+    }
+
     /// Adds a set as the newest.
     pub(super) fn add(&mut self, read: &[FileRecord], record: Hash) {
         let inputs: Vec<Input> =

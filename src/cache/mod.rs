@@ -16,8 +16,10 @@
 #[cfg(feature = "remote")]
 mod credentials;
 mod far;
+mod frame;
 mod manifest;
 mod memory;
+mod recent;
 mod record;
 #[cfg(feature = "remote")]
 mod remote;
@@ -33,8 +35,9 @@ use blake3::Hash;
 use crate::language::source::{DiskFiles, FileRecord, Files as _};
 pub use far::RemoteOptions;
 use far::{Far, Place, far};
-use manifest::Manifest;
+use manifest::{Input, Manifest};
 pub use memory::Memory;
+use recent::{Last, Recent};
 pub use record::{Baked, OutputFile, Record};
 use stamp::Stamps;
 use store::{Kind, Store, seal, sealed};
@@ -57,6 +60,7 @@ fn compiler(stamps: &Stamps) -> Hash {
 pub struct Cache {
     store: Store,
     stamps: Stamps,
+    recent: Recent,
     compiler: Hash,
     /// The first trouble with writing; the rest would be the same.
     trouble: Mutex<Option<String>>,
@@ -84,7 +88,9 @@ impl Cache {
         let store = Store::open(folder, limit)?;
         let stamps = Stamps::load(&store);
         let compiler = compiler(&stamps);
-        Ok(Self { store, stamps, compiler, trouble: Mutex::default(), shapes: Default::default(), far: None })
+        let recent = Recent::load(&store);
+        let (trouble, shapes) = (Mutex::default(), Default::default());
+        Ok(Self { store, stamps, recent, compiler, trouble, shapes, far: None })
     }
 
     /// The same, which looks into a shared cache for what the folder does not have. What is found there comes into the folder.
@@ -111,11 +117,23 @@ impl Cache {
     /// What came of a document when all its inputs were as they are now.
     #[must_use]
     pub fn find(&self, key: &Key, root: &Path) -> Option<Hit> {
-        let files = DiskFiles::new(root).ok()?;
+        let read = |path: &str| DiskFiles::new(root).ok()?.read(path).ok();
         let same = |path: &str, hash: Option<Hash>| {
-            let full = files.root().join(path);
-            self.stamps.hash(&full, || files.read(path).ok().map(|bytes| blake3::hash(&bytes))) == hash
+            let found = self.stamps.hash(&root.join(path), || read(path).map(|bytes| blake3::hash(&bytes)));
+            found == hash
         };
+        if let Some(last) = self.recent.find(&key.0)
+            && last.inputs.iter().all(|input| same(&input.path, input.hash))
+            && let Ok(record) = serde_json::from_slice(&last.text)
+        {
+            let inputs = present(&last.inputs);
+            if !last.was_noted() {
+                self.store.touch(Kind::Manifest, &key.0);
+                self.store.touch(Kind::Object, &last.record);
+                self.recent.add(&key.0, Last::new(last.inputs, last.record, last.text));
+            }
+            return Some(Hit { record, inputs });
+        }
         let mut manifest = Manifest::read(&self.store, &key.0);
         if manifest.find(same).is_none()
             && let Some(shared) = self.far_entry(&key.0)
@@ -127,8 +145,8 @@ impl Cache {
         let bytes = self.object(&entry.record)?;
         let record = serde_json::from_slice(&bytes).ok()?;
         self.store.touch(Kind::Manifest, &key.0);
-        let inputs = entry.inputs.iter().filter(|input| input.hash.is_some());
-        Some(Hit { record, inputs: inputs.map(|input| input.path.clone()).collect() })
+        self.recent.add(&key.0, Last::new(entry.inputs.clone(), entry.record, bytes));
+        Some(Hit { record, inputs: present(&entry.inputs) })
     }
 
     /// The bytes of an output, whole and unbroken.
@@ -239,6 +257,9 @@ impl Cache {
         let mut manifest = Manifest::read(&self.store, &key.0);
         manifest.add(read, hash);
         manifest.write(&self.store, &key.0)?;
+        if let Some(newest) = manifest.newest() {
+            self.recent.add(&key.0, Last::new(newest.inputs.clone(), hash, text.clone()));
+        }
         if let Some(far) = &self.far {
             files.iter().for_each(|bytes| far.put(Place::Object, &blake3::hash(bytes), bytes));
             far.put(Place::Object, &hash, &text);
@@ -251,13 +272,19 @@ impl Cache {
     /// passed. What went wrong with the folder, if anything did.
     #[must_use]
     pub fn finish(&self) -> Option<String> {
-        let ended = self.stamps.save(&self.store).and_then(|()| self.store.trim());
+        let saved = self.stamps.save(&self.store).and_then(|()| self.recent.save(&self.store));
+        let ended = saved.and_then(|()| self.store.trim());
         let mut trouble = self.trouble.lock().unwrap_or_else(PoisonError::into_inner);
         if let Err(error) = ended {
             trouble.get_or_insert(error.to_string());
         }
         trouble.take()
     }
+}
+
+/// The paths of files that there were.
+fn present(inputs: &[Input]) -> Vec<String> {
+    inputs.iter().filter(|input| input.hash.is_some()).map(|input| input.path.clone()).collect()
 }
 
 /// How much a cache holds.

@@ -10,9 +10,8 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use blake3::Hash;
-use serde::{Deserialize, Serialize};
 
-use super::manifest::hexadecimal;
+use super::frame::{In, Out};
 use super::store::Store;
 
 /// A file must not have been changed for this long before its hash is trusted.
@@ -22,7 +21,7 @@ const QUIET: Duration = Duration::from_secs(2);
 const MOST: usize = 1 << 18;
 
 /// What a file looks like.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Look {
     size: u64,
     modified: [u64; 2],
@@ -30,10 +29,9 @@ struct Look {
     number: u64,
 }
 
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug)]
 struct Stamp {
     look: Look,
-    #[serde(with = "hexadecimal")]
     hash: Hash,
 }
 
@@ -46,7 +44,9 @@ pub(super) struct Stamps {
 
 impl Stamps {
     pub(super) fn load(store: &Store) -> Self {
-        let known = store.stamps().and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();
+        let bytes = store.named("stamps").unwrap_or_default();
+        let mut from = In(&bytes);
+        let known = std::iter::from_fn(|| Stamp::read(&mut from)).collect();
         Self { known, new: Mutex::default() }
     }
 
@@ -79,7 +79,35 @@ impl Stamps {
         if all.len() > MOST {
             all.retain(|path, stamp| look(path) == Some(stamp.look));
         }
-        store.put_stamps(&serde_json::to_vec(&all)?)
+        let mut out = Out::default();
+        all.iter().for_each(|(path, stamp)| stamp.write(path, &mut out));
+        store.put_named("stamps", &out.0)
+    }
+}
+
+impl Stamp {
+    fn read(from: &mut In<'_>) -> Option<(PathBuf, Self)> {
+        let path = PathBuf::from(from.text()?);
+        let hash = from.hash()?;
+        let mut numbers = [0; 6];
+        for number in &mut numbers {
+            *number = from.number()?;
+        }
+        let [size, seconds, nanoseconds, changed, changed_nanoseconds, number] = numbers;
+        let changed = [changed, changed_nanoseconds].map(u64::cast_signed);
+        Some((path, Self { look: Look { size, modified: [seconds, nanoseconds], changed, number }, hash }))
+    }
+
+    /// A path that is no text has no stamp, and is read each time.
+    fn write(&self, path: &Path, out: &mut Out) {
+        let Some(path) = path.to_str() else { return };
+        let Look { size, modified, changed, number } = self.look;
+        out.bytes(path.as_bytes());
+        out.hash(&self.hash);
+        let changed = changed.map(i64::cast_unsigned);
+        for number in [size, modified[0], modified[1], changed[0], changed[1], number] {
+            out.number(number);
+        }
     }
 }
 

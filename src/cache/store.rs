@@ -17,6 +17,9 @@ use crate::project::save;
 const TAG: &str = "CACHEDIR.TAG";
 const TAG_TEXT: &str = "Signature: 8a477f597d28d172789f06886806bc55\n# This folder is a cache of Kiln: https://bford.info/cachedir/\n";
 
+/// Files beside the folders, each with its hash behind it.
+const NAMED: [&str; 2] = ["stamps", "recent"];
+
 /// What is left when a cache grew beyond its limit: so that not every run has to look at everything.
 const KEPT: f64 = 0.8;
 
@@ -157,12 +160,14 @@ impl Store {
         used(&folder.join(name));
     }
 
-    pub(super) fn stamps(&self) -> Option<Vec<u8>> {
-        sealed(&stamps_key(), std::fs::read(self.folder.join("stamps")).ok()?)
+    /// What is kept under a name of its own, unless it is broken.
+    pub(super) fn named(&self, name: &str) -> Option<Vec<u8>> {
+        sealed(&blake3::hash(name.as_bytes()), std::fs::read(self.folder.join(name)).ok()?)
     }
 
-    pub(super) fn put_stamps(&self, text: &[u8]) -> io::Result<()> {
-        save(&self.folder, &[("stamps", &seal(&stamps_key(), text))])
+    /// Keeps something under a name of its own, one of [`NAMED`].
+    pub(super) fn put_named(&self, name: &str, bytes: &[u8]) -> io::Result<()> {
+        save(&self.folder, &[(name, &seal(&blake3::hash(name.as_bytes()), bytes))])
     }
 
     /// All files; those that vanish meanwhile are not counted.
@@ -217,7 +222,9 @@ impl Store {
         for kind in Kind::ALL {
             gone(std::fs::remove_dir_all(self.folder.join(kind.folder())))?;
         }
-        gone(std::fs::remove_file(self.folder.join("stamps")))?;
+        for name in NAMED {
+            gone(std::fs::remove_file(self.folder.join(name)))?;
+        }
         Ok(before)
     }
 
@@ -265,10 +272,6 @@ fn gone(result: io::Result<()>) -> io::Result<()> {
 fn used(path: &Path) {
     let file = std::fs::File::options().append(true).open(path);
     let _ = file.and_then(|file| file.set_modified(SystemTime::now()));
-}
-
-fn stamps_key() -> Hash {
-    blake3::hash(b"stamps")
 }
 
 /// What stands under a key, with a hash of both behind it.

@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::values::{
+    assignment, background, bytes, heat, length, pixels, profile, seconds, shard, timeout, view,
+};
 use crate::gltf::Profile;
 use crate::language::Document;
-use crate::language::spec::parse_bytes;
 use crate::preview::View;
 use crate::preview::heat::Heat;
 
@@ -73,6 +75,11 @@ pub(crate) enum Command {
     Fmt(Fmt),
     /// Print what a bake would read and write, for other builds
     Plan(Plan),
+    /// Print which definitions of a document use which, with the time and memory that shapes take, and what is kept of them
+    Graph(Graph),
+    /// Hold the reports of baked files against Blender, MeshLab, trimesh, three.js and the Khronos validator, where these are
+    /// installed (`pip install kiln-verify`)
+    Verify(Verify),
     /// Draw a picture of a document or of a .glb file
     Render(Render),
     /// Bake a document on every save, and show it in a page
@@ -103,10 +110,13 @@ pub(crate) enum Command {
     Cache(CacheCommand),
     /// Print a completion script for a shell
     Completions(Completions),
+    /// Write manual pages
+    #[command(hide = true)]
+    Man(Man),
 }
 
 /// Documents and what they are given.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(crate) struct Documents {
     /// Documents, folders of them, or a project file [default: all of the project, by the kiln.toml here or above]
     #[arg(value_name = "PATH")]
@@ -126,6 +136,10 @@ pub(crate) struct Documents {
     /// Work on one of N equal parts of the documents, from 1, so that N machines share them
     #[arg(long, value_name = "I/N", value_parser = shard)]
     pub(crate) shard: Option<Shard>,
+    /// Take what is named and nothing else, as builds in sandboxes lay it out: links may lead out of the root; no kiln.toml and no
+    /// variable of the environment is heard
+    #[arg(long)]
+    pub(crate) hermetic: bool,
 }
 
 impl Documents {
@@ -178,6 +192,10 @@ pub(crate) struct Bake {
     /// Write which files each output was made of, for Make and Ninja
     #[arg(long, value_name = "FILE")]
     pub(crate) depfile: Option<PathBuf>,
+    /// How much memory documents may take that are baked at one time, by estimate: heavy ones wait for one another, and one alone
+    /// is always baked
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    pub(crate) memory: Option<u64>,
     #[command(flatten)]
     pub(crate) cache: CacheOptions,
     #[command(flatten)]
@@ -211,6 +229,51 @@ pub(crate) enum PlanFormat {
     Ninja,
     /// A file for GNU Make, 4.3 or later
     Make,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Graph {
+    /// The document
+    pub(crate) file: PathBuf,
+    /// What the graph is written as
+    #[arg(long = "as", value_enum, default_value_t = GraphFormat::Dot)]
+    pub(crate) form: GraphFormat,
+    /// The variant of the document
+    #[arg(long, value_name = "NAME")]
+    pub(crate) variant: Option<String>,
+    /// For whom files would be
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = profile)]
+    pub(crate) profile: Vec<Profile>,
+    /// The folder that the document may not read outside of [default: that of the project file, or the working directory]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) root: Option<PathBuf>,
+    /// Set a parameter of the document
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub(crate) set: Vec<(String, String)>,
+    #[command(flatten)]
+    pub(crate) cache: CacheOptions,
+}
+
+/// What a graph is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum GraphFormat {
+    /// The language of Graphviz
+    Dot,
+    /// One object
+    Json,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Verify {
+    /// Folders of baked files, and options of kiln-verify
+    #[arg(required = true, value_name = "OUT", trailing_var_arg = true, allow_hyphen_values = true)]
+    pub(crate) words: Vec<std::ffi::OsString>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Man {
+    /// Where the pages go, one for each command
+    pub(crate) folder: PathBuf,
 }
 
 /// What is remembered of earlier runs.
@@ -320,7 +383,7 @@ pub(crate) struct Render {
     /// The level of detail to show, 0 for the finest
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=7))]
     pub(crate) lod: u8,
-    /// The folder that the document may not read outside of [default: the working directory]
+    /// The folder that the document may not read outside of [default: that of the project file, or the working directory]
     #[arg(long, value_name = "DIR")]
     pub(crate) root: Option<PathBuf>,
     /// The variant of the document
@@ -347,7 +410,7 @@ pub(crate) struct Watch {
     /// For whom files are [default: what the document says, else core]
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = profile)]
     pub(crate) profile: Vec<Profile>,
-    /// The folder that the document may not read outside of [default: the working directory]
+    /// The folder that the document may not read outside of [default: that of the project file, or the working directory]
     #[arg(long, value_name = "DIR")]
     pub(crate) root: Option<PathBuf>,
     /// Set a parameter of the document
@@ -487,100 +550,4 @@ pub(crate) struct Completions {
     /// The shell
     #[arg(value_enum)]
     pub(crate) shell: clap_complete::Shell,
-}
-
-fn assignment(text: &str) -> Result<(String, String), String> {
-    match text.split_once('=') {
-        Some((name, value)) if !name.trim().is_empty() => {
-            Ok((name.trim().to_owned(), value.trim().to_owned()))
-        }
-        _ => Err("write NAME=VALUE, as in `height=0.3`".to_owned()),
-    }
-}
-
-fn shard(text: &str) -> Result<Shard, String> {
-    let shard = text.split_once('/').and_then(|(number, of)| {
-        Some(Shard { number: number.trim().parse().ok()?, of: of.trim().parse().ok()? })
-    });
-    let whole = |shard: &Shard| (1..=shard.of).contains(&shard.number);
-    shard.filter(whole).ok_or_else(|| "a part is written as `1/4`, from 1/4 to 4/4".to_owned())
-}
-
-fn bytes(text: &str) -> Result<u64, String> {
-    parse_bytes(text).ok_or_else(|| "a size is written as `500 MB` or `2 GB`".to_owned())
-}
-
-fn profile(text: &str) -> Result<Profile, String> {
-    let names: Vec<&str> = Profile::NAMED.iter().map(|(name, _)| *name).collect();
-    Profile::named(text).ok_or_else(|| format!("write one of {}", names.join(", ")))
-}
-
-fn heat(text: &str) -> Result<Heat, String> {
-    match text.split_once(':') {
-        Some(("weights", joint)) if !joint.is_empty() => Ok(Heat::Weights(joint.to_owned())),
-        None if text == "deviation" => Ok(Heat::Deviation),
-        None if text == "curvature" => Ok(Heat::Curvature),
-        None if text == "uv-stretch" => Ok(Heat::UvStretch),
-        None if text == "texel-density" => Ok(Heat::TexelDensity),
-        _ => Err("write deviation, curvature, uv-stretch, texel-density, or weights:JOINT".to_owned()),
-    }
-}
-
-fn view(text: &str) -> Result<View, String> {
-    if let Some((_, view)) = View::NAMED.iter().find(|(name, _)| *name == text) {
-        return Ok(*view);
-    }
-    let wrong = || {
-        let names: Vec<&str> = View::NAMED.iter().map(|(name, _)| *name).collect();
-        format!("write {}, or AZIMUTH,ELEVATION in degrees, as in `30,20`", names.join(", "))
-    };
-    let (azimuth, elevation) = text.split_once(',').ok_or_else(wrong)?;
-    let number =
-        |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite()).ok_or_else(wrong);
-    let (azimuth, elevation) = (number(azimuth)?, number(elevation)?);
-    if !(-90.0..=90.0).contains(&elevation) {
-        return Err(format!("the elevation {elevation} lies outside -90 to 90 degrees"));
-    }
-    Ok(View { azimuth, elevation })
-}
-
-fn pixels(text: &str) -> Result<(u32, u32), String> {
-    const MOST: u32 = 8192;
-    let (width, height) = text.split_once('x').unwrap_or((text, text));
-    let number = |text: &str| {
-        let number: u32 = text.trim().parse().map_err(|_| format!("`{text}` is not a number of pixels"))?;
-        if (1..=MOST).contains(&number) {
-            Ok(number)
-        } else {
-            Err(format!("write 1 to {MOST} pixels, not {number}"))
-        }
-    };
-    Ok((number(width)?, number(height)?))
-}
-
-fn length(text: &str) -> Result<f64, String> {
-    let length: f64 = text.trim().parse().map_err(|_| format!("`{text}` is not a length"))?;
-    if length.is_finite() && length > 0.0 { Ok(length) } else { Err("write a length above 0".to_owned()) }
-}
-
-fn background(text: &str) -> Result<[u8; 4], String> {
-    if text == "transparent" {
-        return Ok([0; 4]);
-    }
-    let wrong = || format!("write a color like #e6e8ec, or `transparent`, not `{text}`");
-    let digits =
-        text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii()).ok_or_else(wrong)?;
-    let number = u32::from_str_radix(digits, 16).map_err(|_| wrong())?;
-    let [_, r, g, b] = number.to_be_bytes();
-    Ok([r, g, b, 255])
-}
-
-fn timeout(text: &str) -> Result<f64, String> {
-    let time = seconds(text)?;
-    if (0.1..=600.0).contains(&time) { Ok(time) } else { Err("write 0.1 to 600 seconds".to_owned()) }
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    let time: f64 = text.trim().parse().map_err(|_| format!("`{text}` is not a number of seconds"))?;
-    if time.is_finite() && time >= 0.0 { Ok(time) } else { Err("write 0 or more seconds".to_owned()) }
 }

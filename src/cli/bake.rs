@@ -1,6 +1,7 @@
 //! `kiln bake`: documents into files.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -13,11 +14,11 @@ use super::baked::baked;
 use super::cache;
 use super::dependencies::Dependencies;
 use super::output::Printer;
-use super::project::{Work, each, from_here, loaded, named, out, profiles};
+use super::project::{Budget, Work, each, from_here, loaded, named, out, profiles};
 use super::records::write;
 use super::turns::Message;
 use crate::cache::{Baked, Cache, Hit, Key, Record};
-use crate::compile::{Options, compile_profiles};
+use crate::compile::{Options, compile_profiles, estimated_memory};
 use crate::language::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::language::source::Files as _;
 use crate::language::spec::{backtick, closest};
@@ -52,11 +53,17 @@ pub(crate) fn run(bake: &mut Bake, printer: &Printer) -> Outcome {
         names: tasks.iter().map(|task| task.output.to_lowercase()).collect(),
         printer,
         dependencies: Dependencies::default(),
-        cache: cache::opened(&bake.cache, project, printer).map(Arc::new),
+        cache: if bake.documents.hermetic {
+            None
+        } else {
+            cache::opened(&bake.cache, project, printer).map(Arc::new)
+        },
         hits: AtomicUsize::new(0),
         parameters: Mutex::default(),
     };
-    let work = Work { documents: &bake.documents, records: &bake.records, printer };
+    let cost = |task: &Task| worker.cost(task);
+    let budget: Option<Budget<'_>> = bake.memory.map(|bytes| (bytes, &cost as _));
+    let work = Work { documents: &bake.documents, records: &bake.records, printer, budget };
     let outcome = each(&work, &tasks, &|turn, task, messages| worker.document((turn, task), messages));
     worker.end_cache(tasks.len());
     if outcome == Outcome::Good && bake.documents.paths.is_empty() && bake.documents.shard.is_none() {
@@ -124,18 +131,7 @@ impl Worker<'_> {
         self.note_parameters(&made.record);
         let variants = std::iter::once(None).chain(document.variants().into_iter().map(Some));
         for variant in variants {
-            let options = Options {
-                variant,
-                overrides: self.bake.documents.overrides(&document),
-                name: task.name().to_owned(),
-                path: task.path.clone(),
-                no_report: self.bake.no_report,
-                measure: self.bake.measure,
-                origins: false,
-                deviations: false,
-                keep: self.cache.clone().map(|cache| cache as Arc<dyn Keep>),
-                profiles: self.bake.profile.clone(),
-            };
+            let options = self.options(task, &document, variant);
             match compile_profiles(&document, &files, &options) {
                 Ok(all) => {
                     for mut compiled in all {
@@ -183,6 +179,37 @@ impl Worker<'_> {
             cache.keep(&key, &read, &made.record, &bytes);
         }
         outcome
+    }
+
+    fn options(&self, task: &Task, document: &Document, variant: Option<String>) -> Options {
+        Options {
+            variant,
+            overrides: self.bake.documents.overrides(document),
+            name: task.name().to_owned(),
+            path: task.path.clone(),
+            no_report: self.bake.no_report,
+            measure: self.bake.measure,
+            keep: self.cache.clone().map(|cache| cache as Arc<dyn Keep>),
+            profiles: self.bake.profile.clone(),
+            ..Options::default()
+        }
+    }
+
+    /// Bytes of memory that a document takes, by estimate: of its variants, which are made one after the other, the most. One that
+    /// is wrong, or was baked before, takes nothing to speak of.
+    fn cost(&self, task: &Task) -> u64 {
+        let cached = self.cache.as_deref().map(|cache| (cache, self.key(cache, task)));
+        if cached.is_some_and(|(cache, key)| cache.find(&key, &task.root).is_some()) {
+            return 0;
+        }
+        let Ok((files, Ok(document))) = task.load() else { return 0 };
+        let variants = std::iter::once(None).chain(document.variants().into_iter().map(Some));
+        let costs = variants.map(|variant| {
+            let options = self.options(task, &document, variant);
+            let found = AssertUnwindSafe(|| estimated_memory(&document, &files, &options).unwrap_or(0));
+            catch_unwind(found).unwrap_or(0)
+        });
+        costs.max().unwrap_or(0)
     }
 
     /// Everything but files that outputs depend on.
@@ -336,6 +363,9 @@ impl Worker<'_> {
     }
 
     fn save(&self, task: &Task, file: &str, list: &[(&str, &[u8])], messages: &mut Vec<Message>) -> Outcome {
+        if list.is_empty() {
+            return Outcome::Good;
+        }
         match save(&self.folder(task), list) {
             Ok(()) => Outcome::Good,
             Err(error) => {

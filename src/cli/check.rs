@@ -18,7 +18,7 @@ pub(crate) fn run(check: &mut Check, printer: &Printer) -> Outcome {
         Err(outcome) => return outcome,
     };
     let profiles = profiles(&[], project.as_ref());
-    let work = Work { documents: &check.documents, records: &check.records, printer };
+    let work = Work { documents: &check.documents, records: &check.records, printer, budget: None };
     each(&work, &tasks, &|_, task, messages| document((check, &profiles), task, messages))
 }
 

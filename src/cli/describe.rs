@@ -4,9 +4,10 @@ use clap::CommandFactory as _;
 use serde_json::json;
 
 use super::Outcome;
-use super::arguments::{Arguments, Completions, Explain, Format};
+use super::arguments::{Arguments, Completions, Explain, Format, Man};
 use super::output::Printer;
 use crate::language::diagnostic::Code;
+use crate::project::reason;
 
 pub(crate) fn schema(printer: &Printer) -> Outcome {
     let schema = crate::language::schema();
@@ -51,4 +52,19 @@ pub(crate) fn completions(completions: &Completions) -> Outcome {
     let mut command = Arguments::command();
     clap_complete::generate(completions.shell, &mut command, "kiln", &mut std::io::stdout());
     Outcome::Good
+}
+
+/// Writes a manual page for each command.
+pub(crate) fn manual(man: &Man, printer: &Printer) -> Outcome {
+    let written = std::fs::create_dir_all(&man.folder)
+        .and_then(|()| clap_mangen::generate_to(Arguments::command().max_term_width(0), &man.folder));
+    match written {
+        Ok(()) => Outcome::Good,
+        Err(error) => {
+            let message =
+                format!("cannot write manual pages to {}: {}", man.folder.display(), reason(&error));
+            printer.failure(&message, None);
+            Outcome::Files
+        }
+    }
 }

@@ -10,9 +10,9 @@ use std::sync::Arc;
 use serde_json::json;
 
 use super::Outcome;
-use super::arguments::Fmt;
+use super::arguments::{Documents, Fmt};
 use super::output::Printer;
-use super::project::tasks_at;
+use super::project::{found, tasks_found};
 use crate::language::diagnostic::Diagnostics;
 use crate::language::format;
 use crate::language::source::{SourceMap, decode};
@@ -26,7 +26,10 @@ pub(crate) fn run(fmt: &Fmt, printer: &Printer) -> Outcome {
     if !streams.is_empty() {
         outcome = outcome.max(stream(fmt, printer));
     }
-    let Some(tasks) = tasks_at(&paths, None, printer) else { return Outcome::Files };
+    let Some(tasks) = tasks_found(paths.iter().map(|path| found(path, &Documents::default())), printer)
+    else {
+        return Outcome::Files;
+    };
     for task in &tasks {
         outcome = outcome.max(file(&task.root.join(&task.path), &task.path, fmt, printer));
     }

@@ -5,6 +5,7 @@
 mod arguments;
 mod bake;
 mod baked;
+mod budget;
 mod cache;
 mod check;
 mod dependencies;
@@ -12,6 +13,7 @@ mod describe;
 mod diff;
 mod format;
 mod gallery;
+mod graph;
 mod html;
 mod inspect;
 mod lsp;
@@ -28,6 +30,8 @@ mod starter;
 mod three;
 mod timed;
 mod turns;
+mod values;
+mod verify;
 mod watch;
 
 use std::process::ExitCode;
@@ -78,8 +82,10 @@ pub fn run() -> ExitCode {
         Command::Check(mut check) => check::run(&mut check, &printer),
         Command::Fmt(fmt) => format::run(&fmt, &printer),
         Command::Plan(mut plan) => plan::run(&mut plan, &printer),
+        Command::Graph(graph) => graph::run(&graph, &printer),
+        Command::Verify(verify) => verify::run(&verify, &printer),
         Command::Render(render) => render::run(&render, &printer),
-        Command::Watch(watch) => watch::run(&watch, &printer),
+        Command::Watch(mut watch) => watch::run(&mut watch, &printer),
         Command::Sample(sample) => sample::run(&sample, &printer),
         Command::Schema => describe::schema(&printer),
         Command::Reference => describe::reference(&printer),
@@ -92,6 +98,7 @@ pub fn run() -> ExitCode {
         Command::Inspect(inspect) => inspect::run(&inspect, &printer),
         Command::Cache(command) => cache::run(&command, &printer),
         Command::Completions(completions) => describe::completions(&completions),
+        Command::Man(man) => describe::manual(&man, &printer),
     };
     let outcome = if output::all_printed() { outcome } else { outcome.max(Outcome::Files) };
     ExitCode::from(outcome.code())

@@ -44,7 +44,7 @@ pub(crate) fn run(plan: &mut Plan, printer: &Printer) -> Outcome {
         project: project.map(|project| from_here(project.place()).display().to_string()),
     };
     let steps = Mutex::new(Vec::new());
-    let work = Work { documents: &plan.documents, records: &RecordOptions::default(), printer };
+    let work = Work { documents: &plan.documents, records: &RecordOptions::default(), printer, budget: None };
     let outcome = each(&work, &tasks, &|turn, task, messages| match planned.step((turn, task), messages) {
         Ok(step) => {
             steps.lock().unwrap_or_else(PoisonError::into_inner).extend(step);

@@ -2,12 +2,14 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 use super::Outcome;
 use super::arguments::{Documents, RecordOptions};
+use super::budget;
 use super::output::Printer;
 use super::records::Records;
 use super::turns::{Message, Turns};
@@ -15,7 +17,7 @@ use crate::compile::profile_of;
 use crate::gltf::Profile;
 use crate::language::source::DiskFiles;
 use crate::language::{Document, PROJECT_FILE};
-use crate::project::{Project, ProjectFault, Task, collect, reason};
+use crate::project::{Project, ProjectFault, Task, collect, collect_linked, reason};
 
 /// The documents that the arguments name, and the project that these belong to; how the command ends after a complaint. Outputs of
 /// single documents too have the place that they have in the project, unless another folder is named for them.
@@ -39,6 +41,14 @@ fn project(documents: &mut Documents, printer: &Printer) -> Result<Option<Projec
         [file] if file.file_name().is_some_and(|name| name == PROJECT_FILE) => Some(file.clone()),
         _ => None,
     };
+    if documents.hermetic {
+        if documents.paths.is_empty() || named.is_some() {
+            let help = format!("--hermetic hears no {PROJECT_FILE}: name documents or folders");
+            printer.failure("no document is named", Some(&help));
+            return Err(Outcome::Usage);
+        }
+        return Ok(None);
+    }
     let Some(file) = named.clone().or_else(project_here) else {
         if documents.paths.is_empty() {
             let message = format!("no document is named, and there is no {PROJECT_FILE} here or above");
@@ -115,7 +125,10 @@ fn tasks(documents: &Documents, project: Option<&Project>, printer: &Printer) ->
             printer.diagnostics(&list);
             Outcome::Errors
         })?,
-        _ => tasks_at(&documents.paths, documents.root.as_deref(), printer).ok_or(Outcome::Files)?,
+        _ => {
+            let find = |path: &PathBuf| found(path, documents);
+            tasks_found(documents.paths.iter().map(find), printer).ok_or(Outcome::Files)?
+        }
     };
     if let Some(shard) = documents.shard {
         let mut turn = 0;
@@ -127,16 +140,25 @@ fn tasks(documents: &Documents, project: Option<&Project>, printer: &Printer) ->
     Ok(tasks)
 }
 
-/// The documents at some paths; `None` after a complaint.
-pub(crate) fn tasks_at(paths: &[PathBuf], root: Option<&Path>, printer: &Printer) -> Option<Vec<Task>> {
+/// The documents of a path.
+pub(crate) fn found(path: &Path, documents: &Documents) -> Result<Vec<Task>, String> {
+    let root = documents.root.as_deref();
+    let found = if documents.hermetic { collect_linked(path, root) } else { collect(path, root) };
+    found.and_then(|found| match found.is_empty() {
+        true => Err(format!("no document (.toml) in {}", path.display())),
+        false => Ok(found),
+    })
+}
+
+/// The documents that were found; `None` after a complaint.
+pub(crate) fn tasks_found(
+    found: impl Iterator<Item = Result<Vec<Task>, String>>,
+    printer: &Printer,
+) -> Option<Vec<Task>> {
     let mut tasks = Vec::new();
     let mut good = true;
-    for path in paths {
-        match collect(path, root) {
-            Ok(found) if found.is_empty() => {
-                printer.failure(&format!("no document (.toml) in {}", path.display()), None);
-                good = false;
-            }
+    for found in found {
+        match found {
             Ok(found) => tasks.extend(found),
             Err(message) => {
                 printer.failure(&message, None);
@@ -159,6 +181,27 @@ pub(crate) fn task(path: &Path, root: Option<&Path>) -> Result<Task, String> {
     Err(format!("{} is not a document", path.display()))
 }
 
+/// A single document of the arguments, as one of its project where it has one: with what `bake` would give it. The documents of the
+/// arguments hold its parameters.
+pub(crate) fn single(
+    path: &Path,
+    (root, set): (Option<&Path>, &[(String, String)]),
+    printer: &Printer,
+) -> Result<(Option<Project>, Task, Documents), Outcome> {
+    let mut documents = Documents {
+        paths: vec![path.to_path_buf()],
+        root: root.map(Path::to_path_buf),
+        set: set.to_vec(),
+        ..Documents::default()
+    };
+    let project = project(&mut documents, printer)?;
+    let task = task(path, documents.root.as_deref()).map_err(|message| {
+        printer.failure(&message, None);
+        Outcome::Files
+    })?;
+    Ok((project, task, documents))
+}
+
 /// A document with the files that it is read from; what is wrong with it is said.
 pub(crate) fn loaded(task: &Task, messages: &mut Vec<Message>) -> Result<(DiskFiles, Document), Outcome> {
     let (files, document) = task.load().map_err(|error| {
@@ -177,7 +220,12 @@ pub(crate) struct Work<'a> {
     pub(crate) documents: &'a Documents,
     pub(crate) records: &'a RecordOptions,
     pub(crate) printer: &'a Printer,
+    /// How much those that run at one time may cost, and what one costs; as many as there are threads where it is not said.
+    pub(crate) budget: Option<Budget<'a>>,
 }
+
+/// How much documents that run at one time may cost, and what one costs.
+pub(crate) type Budget<'a> = (u64, &'a (dyn Fn(&Task) -> u64 + Sync));
 
 /// What is done with a document: its turn, itself, and what is said of it.
 type Job<'a> = &'a (dyn Fn(usize, &Task, &mut Vec<Message>) -> Outcome + Sync);
@@ -208,9 +256,19 @@ pub(crate) fn each(work: &Work<'_>, tasks: &[Task], job: Job<'_>) -> Outcome {
         let numbered: Vec<(usize, &Task)> = tasks.iter().enumerate().collect();
         let all = || numbered.par_iter().map(|numbered| one(*numbered)).max().unwrap_or(Outcome::Good);
         let threads = work.documents.jobs.map_or(0, usize::from);
-        match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-            Ok(pool) => pool.install(all),
-            Err(_) => numbered.iter().map(|numbered| one(*numbered)).max().unwrap_or(Outcome::Good),
+        match (rayon::ThreadPoolBuilder::new().num_threads(threads).build(), work.budget) {
+            (Ok(pool), None) => pool.install(all),
+            (Ok(pool), Some((bytes, cost))) => {
+                let costs: Vec<u64> = pool.install(|| tasks.par_iter().map(cost).collect());
+                let worst = Mutex::new(Outcome::Good);
+                budget::run(bytes, &costs, &pool, &|turn| {
+                    let outcome = one(numbered[turn]);
+                    let mut worst = worst.lock().unwrap_or_else(PoisonError::into_inner);
+                    *worst = (*worst).max(outcome);
+                });
+                worst.into_inner().unwrap_or_else(PoisonError::into_inner)
+            }
+            (Err(_), _) => numbered.iter().map(|numbered| one(*numbered)).max().unwrap_or(Outcome::Good),
         }
     };
     progress.finish_and_clear();

@@ -7,7 +7,7 @@ use serde_json::json;
 use super::Outcome;
 use super::arguments::{Hidden, Render, ShadingName};
 use super::output::Printer;
-use super::project::task;
+use super::project::single;
 use crate::compile::{Options, compile_profiles};
 use crate::gltf::Profile;
 use crate::preview::asset::{self, Asset};
@@ -131,20 +131,22 @@ fn bytes(render: &Render, printer: &Printer) -> Result<(Vec<u8>, Vec<Option<Meas
         }
         return Ok((std::fs::read(&render.file).map_err(unread)?, Vec::new()));
     }
-    let task =
-        task(&render.file, render.root.as_deref()).map_err(|message| (Some(message), Outcome::Files))?;
+    let given = (render.root.as_deref(), render.set.as_slice());
+    let (_, task, documents) = single(&render.file, given, printer).map_err(|outcome| (None, outcome))?;
     let (files, document) = task.load().map_err(unread)?;
-    let options = Options {
-        variant: render.variant.clone(),
-        overrides: render.set.clone(),
-        name: task.name().to_owned(),
-        path: task.path.clone(),
-        no_report: true,
-        deviations: render.heat == Some(Heat::Deviation),
-        profiles: vec![Profile::Core],
-        ..Options::default()
-    };
-    let compiled = document.and_then(|document| compile_profiles(&document, &files, &options));
+    let compiled = document.and_then(|document| {
+        let options = Options {
+            variant: render.variant.clone(),
+            overrides: documents.overrides(&document),
+            name: task.name().to_owned(),
+            path: task.path.clone(),
+            no_report: true,
+            deviations: render.heat == Some(Heat::Deviation),
+            profiles: vec![Profile::Core],
+            ..Options::default()
+        };
+        compile_profiles(&document, &files, &options)
+    });
     let mut compiled = compiled.map_err(|list| {
         printer.diagnostics(&list);
         (None, Outcome::Errors)

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::Outcome;
 use super::arguments::Sample;
 use super::output::Printer;
-use super::project::task;
+use super::project::single;
 use super::sample_curve::describe;
 use super::sample_surface::describe as describe_surfaces;
 use super::timed;
@@ -19,12 +19,9 @@ use crate::model::{Model, Recipe};
 use crate::project::reason;
 
 pub(crate) fn run(sample: &Sample, printer: &Printer) -> Outcome {
-    let task = match task(&sample.file, None) {
-        Ok(task) => task,
-        Err(message) => {
-            printer.failure(&message, None);
-            return Outcome::Files;
-        }
+    let (_, task, documents) = match single(&sample.file, (None, &sample.set), printer) {
+        Ok(single) => single,
+        Err(outcome) => return outcome,
     };
     let (files, document) = match task.load() {
         Ok(loaded) => loaded,
@@ -33,15 +30,17 @@ pub(crate) fn run(sample: &Sample, printer: &Printer) -> Outcome {
             return Outcome::Files;
         }
     };
-    let options =
-        Options { overrides: sample.set.clone(), name: task.name().to_owned(), ..Options::default() };
-    let found = document.and_then(|document| match (&sample.curve, &sample.shape) {
-        (Some(name), _) => compile::curve_parts(&document, &files, &options, name)
-            .map(|parts| of_parts(name, parts.as_deref(), sample)),
-        (None, Some(name)) => {
-            compile::model(&document, &files, &options).map(|model| of_shape(name, &model, sample))
+    let found = document.and_then(|document| {
+        let overrides = documents.overrides(&document);
+        let options = Options { overrides, name: task.name().to_owned(), ..Options::default() };
+        match (&sample.curve, &sample.shape) {
+            (Some(name), _) => compile::curve_parts(&document, &files, &options, name)
+                .map(|parts| of_parts(name, parts.as_deref(), sample)),
+            (None, Some(name)) => {
+                compile::model(&document, &files, &options).map(|model| of_shape(name, &model, sample))
+            }
+            (None, None) => Ok(Err("name a curve or a shape".to_owned())),
         }
-        (None, None) => Ok(Err("name a curve or a shape".to_owned())),
     });
     match found {
         Ok(Ok(object)) => {

@@ -26,6 +26,8 @@ pub(crate) struct Task {
     pub(crate) output: String,
     /// Whether it was found in a folder: a library of materials is then passed over.
     pub(crate) found: bool,
+    /// Whether links may lead out of the root.
+    pub(crate) linked: bool,
 }
 
 impl Task {
@@ -33,7 +35,7 @@ impl Task {
     pub(crate) fn load(
         &self,
     ) -> std::io::Result<(DiskFiles, Result<Document, crate::language::diagnostic::Diagnostics>)> {
-        let files = DiskFiles::new(&self.root)?;
+        let files = if self.linked { DiskFiles::linked(&self.root) } else { DiskFiles::new(&self.root) }?;
         let document = Document::load(&self.path, &files as &dyn Files);
         Ok((files, document))
     }
@@ -54,26 +56,43 @@ pub(crate) fn collect(path: &Path, root: Option<&Path>) -> Result<Vec<Task>, Str
         }
         None => default_root(&real)?,
     };
-    if !real.starts_with(&root) {
+    below(path, &real, &root, false)
+}
+
+/// The same, with links left as they are: a file belongs to the root that it is named below, wherever it lies. The root is the
+/// working directory where none is named.
+#[cfg(feature = "cli")]
+pub(crate) fn collect_linked(path: &Path, root: Option<&Path>) -> Result<Vec<Task>, String> {
+    let explain = |path: &Path, error: std::io::Error| format!("{}: {}", path.display(), reason(&error));
+    let absolute = |path: &Path| std::path::absolute(path).map_err(|error| explain(path, error));
+    std::fs::metadata(path).map_err(|error| explain(path, error))?;
+    let root = absolute(root.unwrap_or(Path::new(".")))?;
+    below(path, &absolute(path)?, &root, true)
+}
+
+/// The documents of a place below a root.
+fn below(path: &Path, place: &Path, root: &Path, linked: bool) -> Result<Vec<Task>, String> {
+    if !place.starts_with(root) {
         return Err(format!("{} lies outside the project root {}", path.display(), root.display()));
     }
-    let (folder, mut files) = if real.is_dir() {
+    let (folder, mut files) = if place.is_dir() {
         let mut files = Vec::new();
-        walk(&real, &mut files, 0).map_err(explain)?;
-        (real.clone(), files)
+        walk(place, &mut files, 0).map_err(|error| format!("{}: {}", path.display(), reason(&error)))?;
+        (place, files)
     } else {
-        (real.parent().map_or_else(|| real.clone(), Path::to_path_buf), vec![real.clone()])
+        (place.parent().unwrap_or(place), vec![place.to_path_buf()])
     };
     files.sort();
     Ok(files
         .iter()
         .map(|file| {
-            let below = file.strip_prefix(&folder).unwrap_or(file);
+            let below = file.strip_prefix(folder).unwrap_or(file);
             Task {
-                root: root.clone(),
-                path: slashes(file.strip_prefix(&root).unwrap_or(file)),
+                root: root.to_path_buf(),
+                path: slashes(file.strip_prefix(root).unwrap_or(file)),
                 output: slashes(&below.with_extension("")),
-                found: real.is_dir(),
+                found: place.is_dir(),
+                linked,
             }
         })
         .collect())

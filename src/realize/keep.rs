@@ -14,6 +14,7 @@ use super::inherited::Inherited;
 use super::made_bytes::{decode, encode, size};
 use super::recipe_hash::{Met, RecipeHashes};
 use super::shape::{Made, Maker};
+use super::work::{Origin, ShapeWork, WorkLog};
 use super::{Level, RealizeError};
 use crate::model::{Limits, Model, Recipe, ShapeHandle};
 
@@ -26,10 +27,11 @@ pub trait Keep: Debug + Send + Sync {
     fn keep(&self, key: &Hash, bytes: &[u8]);
 }
 
-/// What is kept of the shapes of a model and its states.
+/// What is kept of the shapes of a model and its states, and what it took to make them where that is asked for.
 #[derive(Debug)]
 pub struct Memo<'a> {
-    keep: &'a dyn Keep,
+    keep: Option<&'a dyn Keep>,
+    log: Option<&'a WorkLog>,
     models: Vec<RecipeHashes<'a>>,
 }
 
@@ -39,11 +41,14 @@ const READING: Duration = Duration::from_micros(200);
 const READING_BYTE: Duration = Duration::from_nanos(3);
 
 impl<'a> Memo<'a> {
-    /// That of a model.
+    /// That of a model; none where nothing is kept and nothing is noted.
     #[must_use]
-    pub fn new(model: &'a Model, keep: &'a dyn Keep) -> Self {
+    pub fn new(model: &'a Model, keep: Option<&'a dyn Keep>, log: Option<&'a WorkLog>) -> Option<Self> {
+        if keep.is_none() && log.is_none() {
+            return None;
+        }
         let models = std::iter::once(model).chain(&model.states).map(RecipeHashes::new).collect();
-        Self { keep, models }
+        Some(Self { keep, log, models })
     }
 
     fn key(&self, maker: &Maker<'_>, handle: ShapeHandle, inherited: &Inherited) -> Option<(Hash, Met)> {
@@ -69,22 +74,38 @@ impl<'a> Memo<'a> {
         inherited: Inherited,
         make: impl Fn() -> Result<(Made, u32), RealizeError>,
     ) -> Result<(Made, u32), RealizeError> {
-        if is_simple(&maker.model.shape(handle).recipe) {
-            return make();
+        let start = Instant::now();
+        let (made, origin) = self.found_or_made((maker, handle), &inherited, make)?;
+        let is_own = self.models.first().is_some_and(|own| std::ptr::eq(own.model, maker.model));
+        if let Some(log) = self.log.filter(|_| is_own && inherited.level.number == 0) {
+            let triangles = made.0.mesh.triangles.len();
+            let work = ShapeWork { time: start.elapsed(), bytes: size(&made.0), triangles, origin };
+            log.add(&maker.model.shape(handle).name, work);
         }
-        let Some((key, met)) = self.key(maker, handle, &inherited) else { return make() };
-        if let Some(found) = self.keep.find(&key).and_then(|bytes| decode(&bytes, &met)) {
-            return Ok(found);
+        Ok(made)
+    }
+
+    fn found_or_made(
+        &self,
+        (maker, handle): (&Maker<'_>, ShapeHandle),
+        inherited: &Inherited,
+        make: impl Fn() -> Result<(Made, u32), RealizeError>,
+    ) -> Result<((Made, u32), Origin), RealizeError> {
+        let simple = is_simple(&maker.model.shape(handle).recipe);
+        let keep = self.keep.filter(|_| !simple);
+        let kept = keep.and_then(|keep| Some((keep, self.key(maker, handle, inherited)?)));
+        let Some((keep, (key, met))) = kept else { return Ok((make()?, Origin::Made)) };
+        if let Some(found) = keep.find(&key).and_then(|bytes| decode(&bytes, &met)) {
+            return Ok((found, Origin::Found));
         }
         let start = Instant::now();
         let (made, sources) = make()?;
         let reading = READING_BYTE.saturating_mul(u32::try_from(size(&made)).unwrap_or(u32::MAX));
-        if start.elapsed() > READING + reading
-            && let Some(bytes) = encode(&made, sources, &met)
-        {
-            self.keep.keep(&key, &bytes);
+        let encoded = (start.elapsed() > READING + reading).then(|| encode(&made, sources, &met)).flatten();
+        if let Some(bytes) = &encoded {
+            keep.keep(&key, bytes);
         }
-        Ok((made, sources))
+        Ok(((made, sources), if encoded.is_some() { Origin::Kept } else { Origin::Made }))
     }
 }
 

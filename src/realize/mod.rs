@@ -9,6 +9,7 @@ mod cloud;
 mod collider;
 mod deformation;
 mod displace;
+mod estimate;
 mod extents;
 mod facets;
 mod height;
@@ -36,13 +37,16 @@ mod swept;
 mod textured;
 mod vertex_color;
 mod window;
+mod work;
 
 pub use collider::colliders;
+pub use estimate::memory;
 pub use keep::{Keep, Memo};
 pub use level::{level, within_limits};
 pub use normal_map::normal_maps;
 pub use source::{Source, Sources, sources};
 pub use window::Window;
+pub use work::{Origin, ShapeWork, WorkLog};
 
 use glam::DVec3;
 use thiserror::Error;

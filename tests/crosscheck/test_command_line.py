@@ -6,6 +6,7 @@ import base64
 import gzip
 import json
 import os
+import re
 import shutil
 import subprocess
 import time
@@ -353,3 +354,50 @@ def test_what_is_no_document_is_not_formatted(kiln: Kiln) -> None:
         assert word.decode() in done.stderr
         assert path.read_bytes() == text
     assert kiln.run("fmt", "none.toml").returncode == 3
+
+
+def test_hermetic_bakes_take_what_is_named_alone(kiln: Kiln, tmp_path_factory: pytest.TempPathFactory) -> None:
+    # As a sandbox lays it out: links to files that lie elsewhere.
+    real = tmp_path_factory.mktemp("real")
+    (real / "common.toml").write_text('[material.m]\ncolor = "#ff0000"\n')
+    (real / "box.toml").write_text(
+        'include = ["common.toml"]\n[shape.s]\nmaterial = "m"\n[shape.s.box]\nsize = [1, 1, 1]\n'
+    )
+    inside = kiln.folder / "models"
+    inside.mkdir()
+    for name in ("common.toml", "box.toml"):
+        (inside / name).symlink_to(real / name)
+    refused = kiln.run("bake", "models/box.toml", "--out", "out", "--root", ".")
+    assert refused.returncode == 3
+    assert "outside" in refused.stderr
+    kiln.write('roots = ["models"]\nprofiles = ["web"]\n[cache]\nfolder = "kept"\n', "kiln")
+    words = ("models/box.toml", "--hermetic", "--out", "out", "--depfile", "made.d")
+    done = subprocess.run(
+        [str(kiln.program), "bake", *words],
+        cwd=kiln.folder,
+        env=os.environ | {"KILN_CACHE": str(kiln.folder / "kept")},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert sorted(path.name for path in (kiln.folder / "out").iterdir()) == ["box.glb", "box.report.json"]
+    assert not (kiln.folder / "kept").exists()
+    assert json.loads((kiln.folder / "out" / "box.report.json").read_text())["spec"] == "models/box.toml"
+    line = (kiln.folder / "made.d").read_text().splitlines()[0]
+    assert line == "out/box.glb out/box.report.json: models/box.toml models/common.toml"
+    # Paths of documents still lead nowhere out of the root, and a file that is not laid out is not read.
+    (real / "box.toml").write_text('include = ["../../common.toml"]\n[shape.s.box]\nsize = [1, 1, 1]\n')
+    assert "leads out of the project" in kiln.run("bake", *words[:4]).stderr
+    assert kiln.run("bake", "--hermetic").returncode == 2
+    assert kiln.run("bake", "kiln.toml", "--hermetic").returncode == 2
+    assert kiln.run("bake", "none.toml", "--hermetic").returncode == 3
+
+
+def test_manual_pages_are_written_for_every_command(kiln: Kiln) -> None:
+    assert kiln.run("man", "pages").returncode == 0
+    pages = {path.name for path in (kiln.folder / "pages").iterdir()}
+    words = re.findall(r"^  ([a-z]+)  ", kiln.run("--help").stdout, flags=re.MULTILINE)
+    assert len(words) > 15
+    assert {f"kiln-{word}.1" for word in words if word != "help"} | {"kiln.1"} <= pages
+    assert "\\-\\-profile" in (kiln.folder / "pages" / "kiln-bake.1").read_text()

@@ -178,3 +178,31 @@ def test_a_link_out_of_the_root_is_told_and_stops_no_other(
     assert "K0003" in done.stderr
     assert '"specs/link.toml" leads out of the project' in done.stderr
     assert names(kiln.folder / "out") == ["chess/pawn.glb", "inner.glb", "vase.glb"]
+
+
+def test_commands_on_one_document_hear_the_project(kiln: Kiln) -> None:
+    prepare(kiln)
+    # `sample` and `render` give what `bake` would: the parameter is the project's, and the command line wins.
+    curve = '[parameters]\nsize = 1\n[curve.c.circle]\nradius = "= size"\n[shape.s.wire]\ncurves = ["c"]\n'
+    kiln.write(curve, "specs/ring")
+    for more, radius in (((), 3), (("--set", "size=5"), 5)):
+        done = kiln.run("sample", "specs/ring.toml", "--curve", "c", "--at", "0", *more)
+        assert done.returncode == 0, done.stderr
+        (point,) = json.loads(done.stdout)["samples"]
+        assert abs(point["point"][0]) == radius
+    pictures = {}
+    for name, more in (("plain", ()), ("three", ("--set", "size=3")), ("one", ("--set", "size=1"))):
+        done = kiln.run("render", "specs/chess/pawn.toml", "--out", f"{name}.png", "--size", "64", *more)
+        assert done.returncode == 0, done.stderr
+        pictures[name] = (kiln.folder / f"{name}.png").read_bytes()
+    assert pictures["plain"] == pictures["three"] != pictures["one"]
+    # A document may read all of the project.
+    (kiln.folder / "specs" / "chess" / "low.toml").write_text('include = ["../../more/base.toml"]\n' + PLAIN)
+    kiln.write("[material.m]\n", "more/base")
+    inside = type(kiln)(kiln.program, kiln.folder / "specs" / "chess")
+    assert inside.run("render", "low.toml", "--out", "low.png", "--size", "64").returncode == 0
+    # A broken project file is told, and a .glb file needs none.
+    kiln.write("roots = 3\n", "kiln")
+    done = kiln.run("render", "specs/vase.toml", "--out", "vase.png")
+    assert done.returncode == 1
+    assert "kiln.toml:1" in done.stderr

@@ -85,7 +85,13 @@ impl Desk {
         let root = self.root.clone().filter(|root| real.starts_with(root)).unwrap_or(folder);
         let below = real.strip_prefix(&root).ok()?;
         let slashes = |path: &std::path::Path| path.to_string_lossy().replace('\\', "/");
-        Some(Task { path: slashes(below), output: slashes(&below.with_extension("")), root, found: false })
+        Some(Task {
+            path: slashes(below),
+            output: slashes(&below.with_extension("")),
+            root,
+            found: false,
+            linked: false,
+        })
     }
 
     fn files(&self, task: &Task) -> Option<Shown<'_>> {

@@ -9,7 +9,7 @@ use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 use super::seen::Seen;
 use crate::cache::Memory;
-use crate::cli::arguments::Watch;
+use crate::cli::arguments::{Documents, Watch};
 use crate::cli::baked::line;
 use crate::compile::{Compiled, Options, compile_profiles};
 use crate::geometry::number::Bounds;
@@ -37,7 +37,7 @@ pub(super) struct Bake<'a> {
 
 impl<'a> Bake<'a> {
     /// Bakes a document.
-    pub(super) fn of(task: &'a Task, watch: &Watch, memory: &Arc<Memory>) -> Self {
+    pub(super) fn of(task: &'a Task, asked: (&Watch, &Documents), memory: &Arc<Memory>) -> Self {
         let mut bake =
             Self { task, seen: None, assets: Vec::new(), diagnostics: None, failure: None, sources: None };
         let seen = match Seen::new(&task.root) {
@@ -47,7 +47,7 @@ impl<'a> Bake<'a> {
                 return bake;
             }
         };
-        if catch_unwind(AssertUnwindSafe(|| bake.document((watch, memory), &seen))).is_err() {
+        if catch_unwind(AssertUnwindSafe(|| bake.document(asked, memory, &seen))).is_err() {
             let message = format!("{}: Kiln failed inside; please report this document as a bug", task.path);
             bake = Self { failure: Some(message), assets: Vec::new(), ..bake };
         }
@@ -55,7 +55,7 @@ impl<'a> Bake<'a> {
         bake
     }
 
-    fn document(&mut self, (watch, memory): (&Watch, &Arc<Memory>), seen: &Seen) {
+    fn document(&mut self, (watch, documents): (&Watch, &Documents), memory: &Arc<Memory>, seen: &Seen) {
         let task = self.task;
         let document = match Document::load(&task.path, seen) {
             Ok(document) => document,
@@ -71,7 +71,7 @@ impl<'a> Bake<'a> {
         let compile = |variant: &Option<String>| {
             let options = Options {
                 variant: variant.clone(),
-                overrides: watch.set.clone(),
+                overrides: documents.overrides(&document),
                 name: task.name().to_owned(),
                 path: task.path.clone(),
                 profiles: watch.profile.clone(),

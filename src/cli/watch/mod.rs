@@ -4,7 +4,8 @@
 //! within [`MERGE`] are one; what is wrong is told on the terminal and in the page, where the last good model stays; no
 //! state of the files ends the watch, and what is mended is seen. Nothing is done while nothing changes. The page is
 //! served on loopback alone.
-//! No promise: a bake that runs is finished before the next begins; the document itself is baked whole.
+//! No promise: a bake that runs is finished before the next begins; the document itself is baked whole; the project file is read
+//! once, at the start.
 
 mod answer;
 mod baked;
@@ -23,10 +24,10 @@ use std::time::{Duration, Instant};
 use serde_json::json;
 
 use super::Outcome;
-use super::arguments::Watch;
+use super::arguments::{Documents, Watch};
 use super::baked::line;
 use super::output::Printer;
-use super::project::task;
+use super::project::{profiles, single};
 use super::three::Three;
 use crate::cache::Memory;
 use crate::compile::Compiled;
@@ -45,14 +46,13 @@ const PATIENCE: Duration = Duration::from_millis(300);
 /// Bytes of realized shapes that are remembered from bake to bake.
 const REMEMBERED: usize = 256 << 20;
 
-pub(crate) fn run(watch: &Watch, printer: &Printer) -> Outcome {
-    let task = match task(&watch.file, watch.root.as_deref()) {
-        Ok(task) => task,
-        Err(message) => {
-            printer.failure(&message, None);
-            return Outcome::Files;
-        }
+pub(crate) fn run(watch: &mut Watch, printer: &Printer) -> Outcome {
+    let given = (watch.root.as_deref(), watch.set.as_slice());
+    let (project, task, documents) = match single(&watch.file, given, printer) {
+        Ok(single) => single,
+        Err(outcome) => return outcome,
     };
+    watch.profile = profiles(&watch.profile, project.as_ref());
     let three = match Three::find(watch.three.as_deref(), &task.root) {
         Ok(three) => three,
         Err(message) => {
@@ -85,7 +85,7 @@ pub(crate) fn run(watch: &Watch, printer: &Printer) -> Outcome {
         printer.failure(&format!("cannot serve the page: {}", reason(&error)), None);
         return Outcome::Files;
     }
-    Watcher { watch, task: &task, printer, stand: &site.stand }.follow()
+    Watcher { watch, documents: &documents, task: &task, printer, stand: &site.stand }.follow()
 }
 
 /// Listens on loopback: at a port, or at any where that is taken.
@@ -107,6 +107,8 @@ fn listen(port: u16, printer: &Printer) -> std::io::Result<(TcpListener, u16)> {
 
 struct Watcher<'a> {
     watch: &'a Watch,
+    /// With the parameters of the document.
+    documents: &'a Documents,
     task: &'a Task,
     printer: &'a Printer,
     stand: &'a Stand,
@@ -121,7 +123,7 @@ impl Watcher<'_> {
         let mut silent: Option<Instant> = None;
         loop {
             let started = Instant::now();
-            let bake = Bake::of(self.task, self.watch, &memory);
+            let bake = Bake::of(self.task, (self.watch, self.documents), &memory);
             let took = started.elapsed();
             if let Some(message) = folders.follow(bake.paths()) {
                 self.printer.result(&format!("note: {message}"), &json!({ "note": message }));

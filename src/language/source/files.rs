@@ -162,6 +162,8 @@ impl Record {
 #[derive(Debug)]
 pub struct DiskFiles {
     root: PathBuf,
+    /// Whether links may lead out of the root.
+    linked: bool,
     record: Record,
 }
 
@@ -175,7 +177,16 @@ impl DiskFiles {
         if !root.is_dir() {
             return Err(io::Error::new(io::ErrorKind::NotADirectory, "the project root is not a folder"));
         }
-        Ok(Self { root, record: Record::default() })
+        Ok(Self { root, linked: false, record: Record::default() })
+    }
+
+    /// The same, where links may lead out of the root: for builds that lay out as links what may be read. Paths that are written in
+    /// documents still lead nowhere else.
+    ///
+    /// # Errors
+    /// When the root is no folder that can be reached.
+    pub fn linked(root: impl AsRef<Path>) -> io::Result<Self> {
+        Ok(Self { linked: true, ..Self::new(root)? })
     }
 
     /// The root, with all links followed.
@@ -188,7 +199,7 @@ impl DiskFiles {
         let path = join("", path)?;
         // Links are followed before the check, so that none leads out.
         let full = self.root.join(path).canonicalize().map_err(|error| file_error(&error))?;
-        if !full.starts_with(&self.root) {
+        if !self.linked && !full.starts_with(&self.root) {
             return Err(FileError::Outside);
         }
         let facts = std::fs::metadata(&full).map_err(|error| file_error(&error))?;

@@ -17,7 +17,7 @@ use crate::language::spec::map::MapDefinition;
 use crate::language::spec::material::Material;
 use crate::language::spec::morph::Morphs;
 use crate::language::spec::node::Node;
-use crate::language::spec::reference::{CurveReference, MapReference, ShapeReference};
+use crate::language::spec::reference::{CurveReference, Family, Link, MapReference, ShapeReference};
 use crate::language::spec::shape::ShapeDefinition;
 use crate::language::spec::skeleton::Skeleton;
 use crate::language::spec::skin::Skin;
@@ -66,6 +66,8 @@ pub struct Spec {
     pub colliders: IndexMap<String, Definition<Collider>>,
     /// The shapes that a document without nodes shows: those that no other definition uses.
     pub roots: Vec<String>,
+    /// Which definition uses which, each once, sorted.
+    pub links: Vec<Link>,
     /// `[assert]`.
     pub asserts: Vec<Assertion>,
     /// `[limits]`, laid under the defaults.
@@ -166,6 +168,28 @@ impl Unit {
 }
 
 impl Spec {
+    /// All definitions: family, name, and where the name is first written; by families, and in the order of the text.
+    pub fn definitions(&self) -> impl Iterator<Item = (Family, &String, Span)> {
+        fn of<T>(
+            family: Family,
+            all: &IndexMap<String, Definition<T>>,
+        ) -> impl Iterator<Item = (Family, &String, Span)> {
+            all.iter().map(move |(name, definition)| (family, name, definition.name.span))
+        }
+        let parts = of(Family::Curve, &self.curves)
+            .chain(of(Family::Map, &self.maps))
+            .chain(of(Family::Field, &self.fields))
+            .chain(of(Family::Shape, &self.shapes))
+            .chain(of(Family::Material, &self.materials));
+        parts
+            .chain(of(Family::Node, &self.nodes))
+            .chain(of(Family::Skeleton, &self.skeletons))
+            .chain(of(Family::Skin, &self.skins))
+            .chain(of(Family::Morph, &self.morphs))
+            .chain(of(Family::Clip, &self.clips))
+            .chain(of(Family::Collider, &self.colliders))
+    }
+
     /// The curve that a reference names or writes; `None` only for a reference of another document.
     #[must_use]
     pub fn curve<'s>(&'s self, reference: &'s CurveReference) -> Option<&'s Curve> {

@@ -143,8 +143,8 @@ pub use project::project_schema;
 pub use quadric::{Quadric, QuadricClip, QuadricWithin, Within};
 pub use reach::{Reach, ReachRule};
 pub use reference::{
-    CurveReference, Family, FieldReference, MapReference, MaterialName, NodeName, ShapeName, ShapeReference,
-    SkeletonName,
+    CurveReference, Family, FieldReference, Link, MapReference, MaterialName, NodeName, ShapeName,
+    ShapeReference, SkeletonName,
 };
 pub use ruled::{End, Ruled, Translational};
 pub use scaling::{Blend, Factor, ScaleStation, Scaling};

@@ -75,6 +75,15 @@ impl Family {
     }
 }
 
+/// One definition that uses another.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Link {
+    /// The definition that uses the other: its family and name.
+    pub user: (Family, String),
+    /// The definition that is used.
+    pub used: (Family, String),
+}
+
 /// A name where one definition uses another.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Use {

@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::reader::{Reader, backtick};
-use crate::language::spec::reference::{Family, Use};
+use crate::language::spec::reference::{Family, Link, Use};
 use crate::language::spec::section::{place_of, titled};
 use crate::language::suggest::closest;
 use crate::language::value::{Data, Table};
@@ -42,10 +42,10 @@ impl Names {
     }
 }
 
-/// Checks every name that was used; the shapes that a document without nodes shows.
+/// Checks every name that was used; the shapes that a document without nodes shows, and which definition uses which.
 ///
-/// Cost: linear in the names and their uses.
-pub(crate) fn resolve(names: &Names, deepest: u32, reader: &mut Reader<'_>) -> Vec<String> {
+/// Cost: linear in the names and their uses, but for sorting these.
+pub(crate) fn resolve(names: &Names, deepest: u32, reader: &mut Reader<'_>) -> (Vec<String>, Vec<Link>) {
     let uses = std::mem::take(&mut reader.uses);
     for one in &uses {
         if names.find(one.family, &one.name).is_none() {
@@ -77,7 +77,15 @@ pub(crate) fn resolve(names: &Names, deepest: u32, reader: &mut Reader<'_>) -> V
     };
     let using = shapes.iter().filter(|one| !moves(one) && !of_state(one));
     let used: BTreeSet<&str> = using.map(|one| one.name.as_str()).collect();
-    names.list(Family::Shape).filter(|name| !used.contains(name)).map(str::to_owned).collect()
+    let roots = names.list(Family::Shape).filter(|name| !used.contains(name)).map(str::to_owned).collect();
+    (roots, links(&uses))
+}
+
+/// Which definition uses which, each once.
+fn links(uses: &[Use]) -> Vec<Link> {
+    let link = |one: &Use| Some(Link { user: one.user.clone()?, used: (one.family, one.name.clone()) });
+    let all: BTreeSet<Link> = uses.iter().filter_map(link).collect();
+    all.into_iter().collect()
 }
 
 fn unknown(one: &Use, names: &Names) -> Diagnostic {

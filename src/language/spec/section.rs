@@ -91,7 +91,7 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
     let clips = family(Family::Clip, &[], table, &mut reader);
     let colliders = family(Family::Collider, &[], table, &mut reader);
     let asserts = table.get("assert").map(|value| read_assertions(value, &mut reader)).unwrap_or_default();
-    let roots = resolve(&Names::of(table), limits.recursion, &mut reader);
+    let (roots, links) = resolve(&Names::of(table), limits.recursion, &mut reader);
     let asset = asset.flatten().unwrap_or(Asset { name: None, description: None });
     let output = output.flatten().unwrap_or(Output { profiles: None, colliders: None });
     let spec = Spec {
@@ -114,6 +114,7 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
         clips,
         colliders,
         roots,
+        links,
         asserts,
         limits,
     };
