@@ -49,7 +49,7 @@ def main() -> int:
 
 def arguments() -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(prog="scripts/verify.py", description=__doc__.split("\n\n")[0])
+    parser = argparse.ArgumentParser(prog=Path(sys.argv[0]).name, description=__doc__.split("\n\n")[0])
     parser.add_argument("paths", nargs="+", type=Path, metavar="OUT", help="folders of baked assets, or .glb files")
     parser.add_argument("--no-report", action="store_true", help="only show what the tools find")
     parser.add_argument("--pictures", action="store_true", help="draw each asset with Blender")

@@ -13,6 +13,7 @@ import json
 import shutil
 import struct
 import subprocess
+import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -23,7 +24,8 @@ from checks.document import split
 from checks.finding import Measured
 
 SCRIPTS = Path(__file__).resolve().parent.parent
-PYTHON = SCRIPTS.parent / ".venv" / "bin" / "python"
+OWN = SCRIPTS.parent / ".venv" / "bin" / "python"
+PYTHON = OWN if OWN.exists() else Path(sys.executable)  # an installed package has the environment that it runs in
 PYTHON_TOOLS = ("written", "trimesh", "meshlab", "blender")
 NODE_TOOLS = ("validator", "three")
 TOOLS = PYTHON_TOOLS + NODE_TOOLS
