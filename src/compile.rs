@@ -10,6 +10,7 @@ mod lod;
 mod motion;
 mod notice;
 mod origin;
+mod placement;
 mod planned;
 mod profile;
 mod solid;
@@ -245,7 +246,11 @@ impl Made<'_> {
         collider::hold(&mut scene, engine::collider_form(profile, spec));
         warnings.extend(collider::rough(built, &scene));
         warnings.extend(engine::unread(profile, spec));
-        let scenes = lod::files(scene, engine::level_form(profile, spec));
+        let placement = placement::placement(&scene, &built.model.frame, spec, profile);
+        let mut scenes = lod::files(scene, engine::level_form(profile, spec));
+        if let Some(placement) = placement {
+            scenes.iter_mut().for_each(|scene| placement.place(scene));
+        }
         let file =
             |(level, scene)| self.file(scene, &shapes, (profile, level), std::mem::take(&mut warnings));
         scenes.into_iter().enumerate().map(file).collect()

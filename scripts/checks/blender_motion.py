@@ -118,7 +118,10 @@ def worlds(graph: bpy.types.Depsgraph) -> dict[str, list[float]]:
         evaluated = item.evaluated_get(graph)
         # Cameras and lights look along their own -z in both.
         own = Matrix.Identity(4) if item.type in ("CAMERA", "LIGHT") else FROM_GLTF
-        found[item.name] = flat(TO_GLTF @ evaluated.matrix_world @ own)
+        # What joints carry has no place in the tree; the importer hangs it on their armature, where it has none either.
+        hung = any(modifier.type == "ARMATURE" for modifier in item.modifiers)
+        world = evaluated.matrix_local if hung else evaluated.matrix_world
+        found[item.name] = flat(TO_GLTF @ world @ own)
     for item in bpy.context.scene.objects:
         if item.type == "ARMATURE":
             evaluated = item.evaluated_get(graph)

@@ -329,10 +329,11 @@ def drawn(level: Facts) -> int:
 
 
 def turned(claimed: list[float], found: list[float] | None, size: float) -> float:
-    """How far apart two places are: the origins, and axes that reach a tenth of the model's size."""
+    """How far apart two places are: the origins, and axes that reach a tenth of the model's size as it is scaled."""
     if found is None:
         return math.inf
-    axes = max(abs(a - b) for a, b in zip(claimed[:12], found[:12], strict=True))
+    scale = max(1.0, *(math.hypot(*claimed[start : start + 3]) for start in (0, 4, 8)))
+    axes = max(abs(a - b) for a, b in zip(claimed[:12], found[:12], strict=True)) / scale
     return max(axes * size / 10.0, *(abs(a - b) for a, b in zip(claimed[12:15], found[12:15], strict=True)))
 
 

@@ -221,8 +221,15 @@ class Document:
 
     @property
     def instances(self) -> list[tuple[int, NDArray[np.float64]]]:
-        """(mesh index, world matrix) for each node that shows a mesh."""
-        return [(node["mesh"], world) for node, world in self.placed if "mesh" in node]
+        """(mesh index, world matrix) for each node that shows a mesh. What joints carry is at rest where they stand."""
+        return [(node["mesh"], self._carried(node, world)) for node, world in self.placed if "mesh" in node]
+
+    def _carried(self, node: dict[str, Any], world: NDArray[Any]) -> NDArray[np.float64]:
+        if "skin" not in node:
+            return world
+        first = self.json["skins"][node["skin"]]["joints"][0]
+        above = [one for one, _ in self.placed if first in one.get("children", [])]
+        return next((own for one, own in self.placed if above and one is above[0]), world)
 
     @property
     def worlds(self) -> dict[str, NDArray[np.float64]]:

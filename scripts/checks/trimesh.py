@@ -30,8 +30,10 @@ def measure(path: Path) -> finding.Measured:
     scene = trimesh.load_scene(opened, file_type="glb" if lines else None, process=False, merge_primitives=True)
     totals: dict[str, Any] = {"triangles": sum(len(mesh.faces) for mesh in scene.geometry.values())}
     if not lines:
+        totals["meshes"] = len(scene.geometry)
+    if not lines and not Document(path).json.get("skins"):  # which it does not know
         low, high = scene.bounds
-        totals |= {"bounds": {"min": low.tolist(), "max": high.tolist()}, "meshes": len(scene.geometry)}
+        totals["bounds"] = {"min": low.tolist(), "max": high.tolist()}
     shapes = {name: shape(mesh) for name, mesh in scene.geometry.items()}
     for name, mesh in scene.geometry.items():
         finest = scene.geometry.get(name.rpartition("_LOD")[0])

@@ -35,6 +35,8 @@ pub struct Written {
     pub colliders: Vec<Collider>,
     /// The meshes of the file that are such bodies.
     pub collider_meshes: std::ops::Range<usize>,
+    /// The node that carries all others, where the file turns, moves or scales the model.
+    pub root: Option<usize>,
     /// The levels of detail of each mesh that has some, the finest first.
     pub levels: Vec<Vec<WrittenLevel>>,
 }
@@ -192,6 +194,7 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
         geometries,
         animations,
         colliders: scene.colliders.clone(),
+        root: scene.root,
         levels,
     })
 }

@@ -475,7 +475,10 @@ fn totals(
         totals.draw_calls += (geometry.parts.len() + geometry.lines.parts.len()) as u64;
         totals.drawn_segments += geometry.lines.segments.len() as u64;
         totals.drawn_triangles += geometry.indices.len() as u64 / 3;
-        let matrix = glam::DMat4::from_cols_array(&facts.matrix);
+        // At rest joints bring what they carry where the node above them brings all.
+        let carried = written.root.filter(|_| node.skin.is_some());
+        let matrix = carried.map_or(&facts.matrix, |root| &nodes[root].matrix);
+        let matrix = glam::DMat4::from_cols_array(matrix);
         let plain = matrix == glam::DMat4::IDENTITY;
         let known = written.geometries.iter().find(|known| known.mesh == mesh.value());
         bounds = match known.and_then(|known| shapes.get(&known.name)).filter(|_| plain) {

@@ -183,6 +183,8 @@ pub(super) fn motion(file: &Read<'_>, written: &Written, model: &Model) -> Resul
         let ends = moving.chain(animation.properties.iter().map(|channel| &channel.times));
         let duration = ends.filter_map(|times| times.last()).copied().fold(0.0, f64::max);
         let time = |k: u32| duration * f64::from(k) / f64::from(POSES - 1);
+        // The model's metres are not the file's where that is scaled.
+        let scale = written.root.map_or(1.0, |root| stage.rest[root].scale.x);
         clips.insert(
             known.name.clone(),
             ClipFacts {
@@ -192,10 +194,10 @@ pub(super) fn motion(file: &Read<'_>, written: &Written, model: &Model) -> Resul
                     + animation.properties.iter().map(|channel| channel.times.len()).sum::<usize>(),
                 properties: properties(animation, known),
                 samples: known.samples,
-                tolerance: known.tolerance,
-                bound: known.bound,
+                tolerance: known.tolerance * scale,
+                bound: known.bound * scale,
                 bounds: stage.bounds(animation, duration),
-                reaches: stage.reaches(animation, model, &known.name),
+                reaches: stage.reaches(animation, model, (&known.name, written.root)),
                 poses: (0..POSES).map(|k| stage.pose(animation, time(k))).collect(),
             },
         );
@@ -323,7 +325,14 @@ impl<'a> Stage<'a> {
     }
 
     /// How near the points of joints come to their places, frame by frame.
-    fn reaches(&self, animation: &ReadAnimation, model: &Model, clip: &str) -> IndexMap<String, ReachFacts> {
+    fn reaches(
+        &self,
+        animation: &ReadAnimation,
+        model: &Model,
+        (clip, root): (&str, Option<usize>),
+    ) -> IndexMap<String, ReachFacts> {
+        let outside = root.map_or(DMat4::IDENTITY, |root| DMat4::from(self.rest[root].map()));
+        let scale = root.map_or(1.0, |root| self.rest[root].scale.x);
         let clip = model.clips.iter().find(|known| known.name == clip);
         let facts = |task: &ReachTask| {
             // Joints and sockets follow the nodes of the document, skeleton by skeleton.
@@ -332,19 +341,21 @@ impl<'a> Stage<'a> {
             let node = model.nodes.len() + before + task.joint;
             let frame = |(time, place, left): &(f64, DVec3, f64)| {
                 let found = self.worlds(animation, *time)[node].transform_point3(task.point);
+                let place = outside.transform_point3(*place);
                 ReachFrame {
                     time: *time,
                     target: place.to_array(),
-                    solved: *left,
-                    distance: found.distance(*place),
+                    solved: *left * scale,
+                    distance: found.distance(place),
                 }
             };
+            let tolerance = task.tolerance * scale;
             let frames: Vec<ReachFrame> = task.frames.iter().map(frame).collect();
             let facts = ReachFacts {
                 point: task.point.to_array(),
-                tolerance: task.tolerance,
+                tolerance,
                 worst: frames.iter().map(|frame| frame.distance).fold(0.0, f64::max),
-                reached: frames.iter().filter(|frame| frame.solved <= task.tolerance).count(),
+                reached: frames.iter().filter(|frame| frame.solved <= tolerance).count(),
                 frames,
             };
             (self.name(node), facts)

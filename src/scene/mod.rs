@@ -49,6 +49,8 @@ pub struct Scene {
     pub collider_form: ColliderForm,
     /// The grid that all positions lie on, where they are written as whole numbers.
     pub grid: Option<Grid>,
+    /// The node that carries all others where the file turns, moves or scales the model: it moves in no motion.
+    pub root: Option<usize>,
     /// How coarser levels of meshes stand in the file.
     pub level_form: LevelForm,
 }

@@ -128,3 +128,34 @@ fn names_that_godot_acts_upon_are_told() {
     let others = files(text, &[Profile::Bevy]);
     assert!(!codes(&others[0]).contains(&Code::EngineName));
 }
+
+const PLACED: &str = "unit = \"cm\"\nup = \"z\"\n[output]\nforward = { bevy = \"-z\", unreal = \"x\" }\npivot = { bevy = \"base\", unreal = [10, 0, 0], three = \"center\" }\nscale = { unreal = 100 }\n[shape.a.box]\nsize = [20, 30, 40]\n[node.box]\nshape = \"a\"\nat = [0, 0, 50]\n[node.lamp]\nparent = \"box\"\n[node.lamp.light]\nkind = \"point\"\nrange = 200\nintensity = 3\n";
+
+/// The box, 0.2 by 0.4 (up) by 0.3 metres about (0, 0.5, 0), turned, moved and scaled: its corners by hand.
+#[test]
+fn a_model_stands_in_each_file_as_its_engine_is_told() {
+    let made = files(PLACED, &[Profile::Core, Profile::Bevy, Profile::Unreal, Profile::Three]);
+    let expected = [
+        ([-0.1, 0.3, -0.15], [0.1, 0.7, 0.15]),
+        ([-0.1, 0.0, -0.15], [0.1, 0.4, 0.15]),
+        ([-15.0, 30.0, 0.0], [15.0, 70.0, 20.0]),
+        ([-0.1, -0.2, -0.15], [0.1, 0.2, 0.15]),
+    ];
+    for (file, (min, max)) in made.iter().zip(expected) {
+        let name = file.profile.name();
+        let report = file.report.as_ref().expect("a report was asked for");
+        let bounds = report.totals.bounds;
+        for (found, wanted) in bounds.min.iter().chain(&bounds.max).zip(min.iter().chain(&max)) {
+            assert!((found - wanted).abs() < 1e-5 * 70.0, "{name}: {bounds:?}");
+        }
+        let json = json(&file.bytes);
+        let scene = json["scenes"][0]["nodes"].as_array().expect("nodes at the top");
+        assert_eq!(scene.len(), 1, "{name}");
+        let named = json["nodes"].as_array().expect("nodes").iter().find(|node| node["name"] == "asset");
+        assert_eq!(named.is_some(), file.profile != Profile::Core, "{name}");
+        let light = &json["extensions"]["KHR_lights_punctual"]["lights"][0];
+        let scale = if file.profile == Profile::Unreal { 100.0 } else { 1.0 };
+        assert_eq!(light["range"].as_f64(), Some(2.0 * scale), "{name}");
+        assert_eq!(light["intensity"].as_f64(), Some(3.0 * scale * scale), "{name}");
+    }
+}

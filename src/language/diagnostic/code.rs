@@ -457,6 +457,9 @@ codes! {
     /// a shape that cannot be laid out on a lightmap
     NoLightmap = "K1055";
 
+    /// a file scaled along one axis more than along another
+    UnevenScale = "K1056";
+
     /// nodes whose aims depend on each other
     AimCircle = "K1070";
     /// a node is where it looks

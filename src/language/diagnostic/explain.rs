@@ -562,6 +562,9 @@ examples! {
     NoLightmap: "A shape is cut into pieces that lie flat on one picture, apart from each other. Where the picture is too small for its pieces and what lies between them, or the shape has more than 200,000 triangles, there is no such layout.",
         "[shape.a]\nlightmap = { size = 16, padding = 7 }\n[shape.a.box]\nsize = [1, 1, 1]" =>
         "[shape.a]\nlightmap = { size = 256, padding = 2 }\n[shape.a.box]\nsize = [1, 1, 1]";
+    UnevenScale: "All that a file holds is made larger by one number. Bodies of physics, lights and the bones of skins cannot be stretched along one axis alone.",
+        "[output]\nscale = [1, 2, 1]\n[shape.a.sphere]\nradius = 1" =>
+        "[output]\nscale = 100\n[shape.a.sphere]\nradius = 1";
     AimCircle: "A node is turned to what it looks at, and turns what it carries. So it cannot look at what it carries itself, nor can two nodes each carry what the other looks at.",
         "[shape.a.sphere]\nradius = 1\n[node.n]\nshape = \"a\"\naim = \"m\"\n[node.m]\nparent = \"n\"\nat = [1, 0, 0]" =>
         "[shape.a.sphere]\nradius = 1\n[node.n]\nshape = \"a\"\naim = \"m\"\n[node.m]\nat = [1, 0, 0]";

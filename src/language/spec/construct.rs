@@ -136,6 +136,15 @@ macro_rules! choices {
         )+}
 
         impl $name {
+            /// All of them, in the order of the reference.
+            pub const ALL: [Self; [$($text),+].len()] = [$( Self::$choice ),+];
+
+            /// The choice of a word.
+            #[must_use]
+            pub fn named(word: &str) -> Option<Self> {
+                Self::ALL.into_iter().find(|one| one.text() == word)
+            }
+
             /// The word of a document.
             #[must_use]
             pub const fn text(self) -> &'static str {

@@ -4,9 +4,8 @@ use indexmap::IndexMap;
 
 use crate::language::source::Span;
 use crate::language::spec::assertion::Assertion;
-use crate::language::spec::check::Check;
 use crate::language::spec::clip::Clip;
-use crate::language::spec::collider::{Collider, ColliderForm};
+use crate::language::spec::collider::Collider;
 use crate::language::spec::construct::{choices, table};
 use crate::language::spec::curve::Curve;
 use crate::language::spec::field::FieldDefinition;
@@ -17,6 +16,7 @@ use crate::language::spec::map::MapDefinition;
 use crate::language::spec::material::Material;
 use crate::language::spec::morph::Morphs;
 use crate::language::spec::node::Node;
+use crate::language::spec::output::Output;
 use crate::language::spec::reference::{CurveReference, Family, Link, MapReference, ShapeReference};
 use crate::language::spec::shape::ShapeDefinition;
 use crate::language::spec::skeleton::Skeleton;
@@ -98,48 +98,6 @@ choices! {
         Inch = "in";
         /// Feet of 304.8 mm.
         Foot = "ft";
-    }
-}
-
-choices! {
-    /// For whom a file is.
-    OutputProfile {
-        /// `NAME.glb`: floats, and no extension is needed. Every engine opens it.
-        Core = "core";
-        /// `NAME.quantized.glb`: positions of 16 bits on one grid for the whole model, normals and tangents of 8, texture
-        /// coordinates of 16 where they lie in the unit square. Needs `KHR_mesh_quantization`.
-        Quantized = "quantized";
-        /// `NAME.web.glb`: as quantized, on the coarsest grid that the tolerance allows, and compressed. Needs
-        /// `KHR_mesh_quantization` and `EXT_meshopt_compression`.
-        Web = "web";
-        /// `NAME.verify.glb`: as core; meshes that are closed say by `EXT_mesh_manifold`, which is not required, which of their
-        /// vertices are one, so that programs that need solids have them without guessing.
-        Verify = "verify";
-        /// `NAME.bevy.glb`: as core. Levels of detail in files of their own, each a scene for a `VisibilityRange`; colliders in `extras`.
-        Bevy = "bevy";
-        /// `NAME.godot.glb`: as core. Levels in files of their own, colliders by names. A warning tells names that Godot acts upon.
-        Godot = "godot";
-        /// `NAME.unreal.glb`: as core. Levels in files of their own, colliders by names.
-        Unreal = "unreal";
-        /// `NAME.unity.glb`: as quantized. Levels in files of their own, colliders in `extras`.
-        Unity = "unity";
-        /// `NAME.three.glb`: as quantized. Levels by `MSFT_lod`, for which three.js has a plugin; colliders in `extras`.
-        Three = "three";
-        /// `NAME.babylon.glb`: as quantized. Levels by `MSFT_lod`, colliders in `extras`.
-        Babylon = "babylon";
-        /// `NAME.blender.glb`: as core. Levels in files of their own, colliders in `extras`.
-        Blender = "blender";
-    }
-}
-
-table! {
-    /// What is written.
-    "output" pub Output {
-        /// One file for each of them; `["core"]` when it is not written.
-        profiles: Option<Sp<Vec<Sp<OutputProfile>>>> => Check::items(1);
-        /// How colliders stand in files. When it is not written: "godot" and "unreal" in the profiles of these names, else
-        /// "extras".
-        colliders: Option<Sp<ColliderForm>>;
     }
 }
 

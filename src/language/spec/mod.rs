@@ -39,6 +39,7 @@ mod name;
 mod node;
 mod nurbs_surface;
 mod operation;
+mod output;
 mod page;
 mod parametric;
 mod part;
@@ -97,7 +98,7 @@ pub use cubic::{Basis, BetaSpline, Border, Cubic};
 pub use curve::{Circle, Curve, Ellipse, Helix, Line, Polyline, Reverse, Transform};
 pub use deform::{Along, Bend, CoordinateAxis, Taper, Twist};
 pub use displace::{Displace, DisplaceProjection};
-pub use document::{Asset, Definition, Output, OutputProfile, Spec, Unit};
+pub use document::{Asset, Definition, Spec, Unit};
 pub use dxf::Dxf;
 pub use field::{
     BumpField, FallOff, Field, FieldDefinition, FieldFormula, FieldJoin, FieldOptions, FieldQuadric,
@@ -126,6 +127,7 @@ pub use morph::{Morph, MorphName, Morphs, ParameterValue};
 pub use node::{Node, SceneImport};
 pub use nurbs_surface::{BSplineSurface, NurbsSurface};
 pub use operation::{Chamfer, Fillet, Offset, OffsetCorner, ProfileSet};
+pub use output::{ByProfile, Forward, Output, OutputProfile, OutputScale, Pivot};
 pub use page::reference;
 pub use parametric::Parametric;
 pub use part::{CurveGroup, Part};

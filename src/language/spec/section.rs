@@ -7,7 +7,7 @@ use crate::language::source::{SourceMap, Span};
 use crate::language::spec::assertion::read_assertions;
 use crate::language::spec::check::Check;
 use crate::language::spec::curve::Curve;
-use crate::language::spec::document::{Asset, Definition, Output, Spec, Unit};
+use crate::language::spec::document::{Asset, Definition, Spec, Unit};
 use crate::language::spec::field::Field;
 use crate::language::spec::import::Up;
 use crate::language::spec::kind::Kinds;
@@ -16,6 +16,7 @@ use crate::language::spec::lod::Lod;
 use crate::language::spec::map::Map;
 use crate::language::spec::morph::{self, Morphs};
 use crate::language::spec::name::check_name;
+use crate::language::spec::output::Output;
 use crate::language::spec::reader::{Read, Reader, backtick, unknown_field};
 use crate::language::spec::reference::Family;
 use crate::language::spec::resolve::{Names, resolve};
@@ -93,7 +94,7 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
     let asserts = table.get("assert").map(|value| read_assertions(value, &mut reader)).unwrap_or_default();
     let (roots, links) = resolve(&Names::of(table), limits.recursion, &mut reader);
     let asset = asset.flatten().unwrap_or(Asset { name: None, description: None });
-    let output = output.flatten().unwrap_or(Output { profiles: None, colliders: None });
+    let output = output.flatten().unwrap_or(Output::NONE);
     let spec = Spec {
         unit,
         up,
