@@ -238,6 +238,7 @@ impl Made<'_> {
         }
         realize::normal_maps(&built.model, &mut scene, &shapes).map_err(|errors| refusals(built, errors))?;
         lod::settle(&mut scene, &mut shapes);
+        realize::attributes(&built.model, &mut scene, &shapes).map_err(|errors| refusals(built, errors))?;
         // What encloses a shape encloses its written places.
         let coarser =
             realize::Options { coarser: 1.0 - share, memo: self.memo, ..realize::Options::default() };
@@ -421,7 +422,9 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
             Code::TornHeights,
             "write another `projection`, a map whose borders agree where the texture has a seam, or a `formula` without jumps",
         ),
-        RealizeError::NoColor { .. } | RealizeError::Tessellate(TessellateError::NoHeight { .. }) => {
+        RealizeError::NoColor { .. }
+        | RealizeError::NoAttribute { .. }
+        | RealizeError::Tessellate(TessellateError::NoHeight { .. }) => {
             (Code::FormulaValue, "say with `if` what holds there")
         }
         RealizeError::Tessellate(TessellateError::CrossesItself { .. }) => (

@@ -3,6 +3,7 @@
 //! Every file baked here is read by [`glb`], which shares nothing with Kiln's own reader, and held against the report.
 
 mod accuracy;
+mod attributes;
 mod baked;
 mod bevels;
 mod colliders;

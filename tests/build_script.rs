@@ -6,7 +6,7 @@ use std::process::Command;
 
 use kiln::Build;
 
-const VASE: &str = "include = [\"common/clay.toml\"]\n[shape.body]\nmaterial = \"clay\"\n[shape.body.sphere]\nradius = 1\n\
+const VASE: &str = "include = [\"common/clay.toml\"]\n[shape.body]\nmaterial = \"clay\"\nattributes = { _WIND = \"= y\" }\n[shape.body.sphere]\nradius = 1\n\
                     [variant.tall.shape.body]\nscale = [1, 2, 1]\n[lod]\nlevels = 3";
 const CLAY: &str = "[material.clay]\ncolor = \"#b5651d\"";
 const PAWN: &str = "[parameters]\nsize = 1\n[shape.pawn-foot.box]\nsize = [\"= size\", 1, 1]";
@@ -130,6 +130,7 @@ fn the_module_is_rust() {
          assert_eq!((assets::vase_tall::BOUNDS[0][1], assets::vase_tall::BOUNDS[1][1]), (-2.0, 2.0));\n\
          assert_eq!(assets::chess::pawn::meshes::PAWN_FOOT, \"pawn-foot\");\n\
          assert_eq!(assets::vase::materials::ALL, [\"clay\"]);\n\
+         assert_eq!(assets::vase::attributes::WIND, \"_WIND\");\n\
          let levels = assets::vase::lods::BODY;\n\
          assert_eq!(levels.iter().map(|(name, _)| *name).collect::<Vec<_>>(), [\"body\", assets::vase::meshes::BODY_LOD1, \"body_LOD2\"]);\n\
          assert!(levels[0].1 > levels[1].1 && levels[2].1 == 0.0);\n\

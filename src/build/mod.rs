@@ -4,6 +4,7 @@
 //! found in one run, each with its place; what is built satisfies the preconditions of the geometry kernels
 //! (profiles flat, closed where they must be, on their side of the axis, free of crossings).
 
+mod attribute;
 mod bevel;
 mod bezier_triangle;
 mod bspline;
@@ -199,6 +200,7 @@ impl<'a> Builder<'a> {
             morphs: Vec::new(),
             states: Vec::new(),
             colliders: Vec::new(),
+            attributes: Vec::new(),
             motion_tolerance: spec.motion_tolerance.map(|tolerance| tolerance.value * spec.unit.metres()),
             paths: Vec::new(),
             limits: Limits {
@@ -259,6 +261,7 @@ impl<'a> Builder<'a> {
         self.attach_nodes();
         self.aim_nodes();
         self.skins();
+        self.attributes();
         self.morphs(states);
         self.clips();
         self.sequence_clips(played);

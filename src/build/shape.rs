@@ -38,6 +38,7 @@ impl Builder<'_> {
         match reference {
             ShapeReference::Named(name) => self.named_shape(&name.value),
             ShapeReference::Inline(shape) => {
+                self.refuse_attributes(&shape.value.options);
                 self.shape(&format!("{user}-{}", index + 1), &shape.value, shape.span)
             }
         }

@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use gltf::json::Root;
+use gltf::json::mesh::Semantic;
+use gltf::json::validation::Checked;
 
 use super::names;
 use crate::geometry::number::single;
@@ -59,7 +61,7 @@ fn lists(root: &Root) -> Vec<(&'static str, Vec<String>)> {
     let socket = |node: &gltf::json::Node| {
         extra(&node.extras).is_some_and(|value| value.get("socket").is_some_and(|mark| mark == true))
     };
-    let mut kinds: [(&'static str, Vec<String>); 7] = [
+    let mut kinds: [(&'static str, Vec<String>); 8] = [
         ("nodes", Vec::new()),
         ("meshes", root.meshes.iter().filter_map(|mesh| mesh.name.clone()).collect()),
         ("materials", root.materials.iter().filter_map(|material| material.name.clone()).collect()),
@@ -67,6 +69,7 @@ fn lists(root: &Root) -> Vec<(&'static str, Vec<String>)> {
         ("joints", Vec::new()),
         ("sockets", Vec::new()),
         ("morphs", Vec::new()),
+        ("attributes", attributes(root)),
     ];
     for (index, node) in root.nodes.iter().enumerate() {
         let Some(name) = node.name.clone() else { continue };
@@ -87,6 +90,21 @@ fn lists(root: &Root) -> Vec<(&'static str, Vec<String>)> {
     let mut lists: Vec<(&'static str, Vec<String>)> = kinds.into();
     lists.retain(|(_, names)| !names.is_empty());
     lists
+}
+
+/// Attributes of vertices that the format has no name for, each once.
+fn attributes(root: &Root) -> Vec<String> {
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let mut names: Vec<String> = primitives
+        .flat_map(|primitive| primitive.attributes.keys())
+        .filter_map(|semantic| match semantic {
+            Checked::Valid(Semantic::Extras(name)) => Some(format!("_{name}")),
+            _ => None,
+        })
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    names
 }
 
 /// Modules and assets in a module.

@@ -81,6 +81,17 @@ pub(super) fn unread(profile: Profile, spec: &Spec) -> Vec<Diagnostic> {
         );
     }
     found.extend(unread_properties(profile, engine, spec));
+    let attributes = spec.shapes.values().find_map(|shape| shape.value.options.attributes.0.first());
+    if let Some((name, attribute)) = attributes
+        && matches!(profile, Profile::Godot | Profile::Unreal | Profile::Unity | Profile::Babylon)
+    {
+        let message = format!("{engine} leaves out attributes of names of their own, such as `{name}`");
+        found.push(
+            Diagnostic::warning(Code::EngineAttributes, message)
+                .at(attribute.span, "this attribute")
+                .help("write what it says into `vertex-color`, which every engine reads"),
+        );
+    }
     if profile == Profile::Godot {
         found.extend(changed_by_godot(spec));
     }

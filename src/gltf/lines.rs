@@ -9,6 +9,7 @@ use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked as Valid;
 use gltf::json::{Accessor, Index, Root};
 
+use super::attribute;
 use super::buffer::{Binary, index_accessors};
 use super::color::colors;
 use super::position::positions;
@@ -20,6 +21,7 @@ pub(super) struct Lines {
     origin: u32,
     position: Index<Accessor>,
     color: Option<Index<Accessor>>,
+    attributes: attribute::Named,
     indices: Index<Accessor>,
 }
 
@@ -28,6 +30,7 @@ impl Lines {
         let material = mesh.materials[self.origin as usize];
         let mut attributes = BTreeMap::from([(Valid::Valid(Semantic::Positions), self.position)]);
         attributes.extend(self.color.map(|color| (Valid::Valid(Semantic::Colors(0)), color)));
+        attribute::name(&mut attributes, &self.attributes);
         Primitive {
             attributes,
             extensions: None,
@@ -54,12 +57,19 @@ pub(super) fn shared(
     let position = positions(root, binary, grid, wire.points.iter().map(|point| point.position));
     let shades = wire.points.iter().map(|point| point.color);
     let color = geometry.colored.then(|| colors(root, binary, shades, small));
+    let attributes = attribute::written(root, binary, &geometry.attributes, |own| &own.of_lines);
     let mut origins: Vec<u32> = wire.strands.iter().map(|strand| strand.origin).collect();
     origins.dedup();
     let ends = |origin: &u32| wire.segments(*origin).flatten();
     let counts = origins.iter().map(|origin| ends(origin).count());
     let all = origins.iter().flat_map(ends);
     let indices = index_accessors(root, binary, all, (wire.points.len(), true), counts);
-    let lines = |(origin, indices): (u32, Index<Accessor>)| Lines { origin, position, color, indices };
+    let lines = |(origin, indices): (u32, Index<Accessor>)| Lines {
+        origin,
+        position,
+        color,
+        attributes: attributes.clone(),
+        indices,
+    };
     origins.iter().copied().zip(indices).map(lines).collect()
 }

@@ -5,6 +5,7 @@
 //! `core` profile requires no extension. Source: Khronos Group, glTF 2.0 Specification, 2021; `KHR_mesh_quantization`,
 //! 2020; `EXT_meshopt_compression`, 2021.
 
+mod attribute;
 mod buffer;
 mod carrier;
 mod collider;
@@ -25,6 +26,7 @@ mod read_second;
 mod view;
 mod write;
 
+pub use attribute::ReadRange;
 pub use carrier::ReadLevels;
 pub use color::ReadColors;
 pub use profile::Profile;

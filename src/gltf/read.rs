@@ -11,8 +11,10 @@ use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::mesh::{Mode, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Index, Root};
+use indexmap::IndexMap;
 use thiserror::Error;
 
+use super::attribute::{ReadRange, read_attributes};
 use super::carrier::{ReadLevels, drop_carriers, read_levels};
 use super::color::{ReadColors, read_colors};
 use super::read_second::read_second;
@@ -56,6 +58,8 @@ pub struct Geometry<'a> {
     pub lines: Lines,
     /// The range of its colors, where it has some.
     pub colors: Option<ReadColors>,
+    /// The ranges of its attributes that the format has no name for.
+    pub attributes: IndexMap<String, ReadRange>,
     /// For each vertex its second texture coordinates, where all primitives have them.
     pub second: Option<Vec<[f32; 2]>>,
 }
@@ -273,6 +277,7 @@ fn geometry<'a>(data: Data<'_, 'a>, mesh: usize) -> Result<Geometry<'a>, ReadErr
             parts,
             lines,
             colors: read_colors(root, binary, mesh)?,
+            attributes: read_attributes(root, binary, mesh)?,
             second,
         }),
     }

@@ -14,7 +14,7 @@ use super::buffer::{Binary, Content, Elements, at, index_accessors, index_width}
 use super::color::colors;
 use super::position::positions;
 use super::profile::Profile;
-use super::{carrier, collider, duplicate, lines, manifold, material, morph, motion, pointer, view};
+use super::{attribute, carrier, collider, duplicate, lines, manifold, material, morph, motion, pointer, view};
 use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
 use crate::geometry::number::{floor_count, size};
@@ -221,11 +221,12 @@ fn binary_size(checked: Checked<'_>) -> usize {
         let triangles = geometry.mesh.triangles.len() * 3 * index_width(vertices);
         let color = if geometry.colored { 16 } else { 0 };
         let carried = if geometry.influences.is_some() { 8 } else { 0 };
+        let own: usize = geometry.attributes.iter().map(|own| 4 * own.width).sum();
         let states = geometry.targets.len() * (vertices * (24 + tangent) + 512);
-        vertices * (24 + tangent + uv + color + carried)
+        vertices * (24 + tangent + uv + color + carried + own)
             + states
             + triangles
-            + points * (12 + color + 2 * index_width(points))
+            + points * (12 + color + own + 2 * index_width(points))
             + 128
     };
     let images: usize = scene.images.iter().map(|image| image.bytes.len() + 4).sum();
@@ -257,6 +258,7 @@ struct Shared {
     lightmap: Option<Index<Accessor>>,
     color: Option<Index<Accessor>>,
     carried: Option<motion::Carried>,
+    attributes: attribute::Named,
     targets: Vec<gltf::json::mesh::MorphTarget>,
     /// For each run its indices.
     indices: Vec<Index<Accessor>>,
@@ -296,12 +298,13 @@ impl Writer {
         let shades = mesh.vertices.iter().map(|vertex| vertex.color);
         let color = geometry.colored.then(|| colors(root, binary, shades, self.small));
         let carried = motion::carried(root, binary, geometry);
+        let attributes = attribute::written(root, binary, &geometry.attributes, |own| &own.values);
         let targets = morph::targets(root, binary, geometry, (self.grid, self.small));
         let ends = [0].into_iter().chain(mesh.runs.iter().map(|run| run.end));
         let counts = ends.zip(&mesh.runs).map(|(start, run)| (run.end - start) as usize * 3);
         let all = mesh.triangles.iter().flatten().map(|vertex| vertex.0);
         let indices = index_accessors(root, binary, all, (mesh.vertices.len(), false), counts);
-        Shared { position, normal, tangent, uv, lightmap, color, carried, targets, indices }
+        Shared { position, normal, tangent, uv, lightmap, color, carried, attributes, targets, indices }
     }
 
     fn mesh(
@@ -344,6 +347,7 @@ impl Writer {
                 attributes.insert(Valid::Valid(Semantic::Joints(0)), carried.joints);
                 attributes.insert(Valid::Valid(Semantic::Weights(0)), carried.weights);
             }
+            attribute::name(&mut attributes, &shared.attributes);
             Primitive {
                 attributes,
                 extensions: None,

@@ -4,6 +4,7 @@
 //! the text it came from; handles always point at what exists, and a recipe refers only to shapes before it,
 //! so there is no cycle. Lengths are in the document's unit; [`Model::frame`] turns and scales them to glTF.
 
+mod attribute;
 mod collider;
 mod deform;
 mod displace;
@@ -15,6 +16,7 @@ mod subdivide;
 mod vertex_color;
 mod view;
 
+pub use attribute::{At, Attribute};
 pub use collider::{Collider, Fit};
 pub use deform::{AxialBending, Bending, PathBending};
 pub use displace::{Displacement, Heights, Projection};
@@ -152,6 +154,8 @@ pub struct Model {
     pub clips: Vec<Clip>,
     /// Bodies for physics.
     pub colliders: Vec<Collider>,
+    /// Attributes of vertices that games read themselves.
+    pub attributes: Vec<Attribute>,
     /// How far vertices may be from exact motions for clips that do not say, metres.
     pub motion_tolerance: Option<f64>,
     /// Paths, for the report of their joints.

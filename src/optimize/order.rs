@@ -358,6 +358,7 @@ mod tests {
             colored: false,
             tangents: Some(tangents),
             lightmap: None,
+            attributes: Vec::new(),
             influences: None,
             targets: Vec::new(),
             deviation: Deviation { bound: 0.0, evidence: Evidence::Exact },

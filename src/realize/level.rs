@@ -40,6 +40,7 @@ pub fn level(model: &Model, options: &Options<'_>, finest: &Realized) -> Vec<Opt
             wire: made.wire,
             tangents: None,
             lightmap: None,
+            attributes: Vec::new(),
             influences,
             targets: Vec::new(),
         })

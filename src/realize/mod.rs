@@ -4,6 +4,7 @@
 //! every part of it, after all maps; the limits hold before memory is taken. Not promised: that a shape is
 //! closed; the report measures that.
 
+mod attribute;
 mod bent;
 mod cloud;
 mod collider;
@@ -39,6 +40,7 @@ mod vertex_color;
 mod window;
 mod work;
 
+pub use attribute::attributes;
 pub use collider::colliders;
 pub use estimate::memory;
 pub use keep::{Keep, Memo};
@@ -204,6 +206,14 @@ pub enum RealizeError {
         collider: usize,
         /// Why.
         fault: SolidFault,
+    },
+    /// An attribute by a formula that has no value somewhere.
+    #[error("its attribute `{name}` has no value at {}", told(*place))]
+    NoAttribute {
+        /// The attribute.
+        name: String,
+        /// Where, in the document's unit.
+        place: DVec3,
     },
     /// A color by a formula that has no value somewhere.
     #[error("its color has no value at {}", told(*place))]

@@ -124,6 +124,7 @@ fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Mo
             wire: made.wire,
             tangents: None,
             lightmap: None,
+            attributes: Vec::new(),
             influences: None,
             targets,
         });

@@ -9,6 +9,7 @@ pub(super) fn wants_uv(model: &Model, handle: ShapeHandle, overrides: &[Option<M
         // A second set of coordinates is no second without a first.
         _ if shape.options.lightmap.is_some() => true,
         UvMode::Always => true,
+        _ if model.attributes.iter().any(|own| own.shape == handle && own.wants_uv) => true,
         UvMode::None => false,
         UvMode::Auto => {
             let textured = |material: &MaterialHandle| model.material(*material).has_texture();

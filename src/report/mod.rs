@@ -176,6 +176,9 @@ pub struct ShapeFacts {
     /// The colors of its vertices, where it has some.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub colors: Option<ColorFacts>,
+    /// Its attributes that games read themselves, by their names.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub attributes: IndexMap<String, AttributeFacts>,
     /// Its second texture coordinates.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lightmap: Option<LightmapFacts>,
@@ -200,6 +203,16 @@ pub struct ColorFacts {
     pub min: [f32; 4],
     /// The greatest of each part.
     pub max: [f32; 4],
+}
+
+/// The range of an attribute that games read themselves.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct AttributeFacts {
+    /// The least of each component.
+    pub min: Vec<f32>,
+    /// The greatest of each component.
+    pub max: Vec<f32>,
 }
 
 /// Distance between written triangles and exact shape.
@@ -354,6 +367,11 @@ fn shape_facts(
     Ok(ShapeFacts {
         primitives: geometry.parts.len() + geometry.lines.parts.len(),
         colors: geometry.colors.map(|colors| ColorFacts { min: colors.min, max: colors.max }),
+        attributes: geometry
+            .attributes
+            .iter()
+            .map(|(name, own)| (name.clone(), AttributeFacts { min: own.min.clone(), max: own.max.clone() }))
+            .collect(),
         lightmap: model.shape(handle).options.lightmap.and_then(|asked| lightmaps::lightmap(geometry, asked)),
         lines,
         deviation: DeviationFacts {

@@ -56,6 +56,9 @@ pub enum SceneError {
     /// Second texture coordinates are not one for each vertex, or leave the unit square.
     #[error("shape `{0}` has second texture coordinates that leave the unit square")]
     Lightmap(String),
+    /// An attribute of its own is not one for each vertex, or not finite.
+    #[error("shape `{0}` has an attribute `{1}` that is not finite at each vertex")]
+    Attribute(String, String),
     /// A position is not on the grid of the scene.
     #[error("shape `{0}` has a coordinate that is not on the grid of the model")]
     OffGrid(String),
@@ -104,6 +107,7 @@ pub fn check(scene: &Scene) -> Result<Checked<'_>, SceneError> {
     }
     for geometry in &scene.geometries {
         check_geometry(geometry)?;
+        check_attributes(geometry)?;
         check_grid(scene, geometry)?;
         morph::check(scene, geometry)?;
     }
@@ -269,6 +273,20 @@ fn check_lightmap(geometry: &Geometry) -> Result<(), SceneError> {
     } else {
         Err(SceneError::Lightmap(geometry.name.clone()))
     }
+}
+
+fn check_attributes(geometry: &Geometry) -> Result<(), SceneError> {
+    for own in &geometry.attributes {
+        let counts =
+            [(&own.values, geometry.mesh.vertices.len()), (&own.of_lines, geometry.wire.points.len())];
+        let held = |value: &f32| if own.bytes { (0.0..=1.0).contains(value) } else { value.is_finite() };
+        let whole =
+            counts.iter().all(|(values, count)| values.len() == count * own.width && values.iter().all(held));
+        if !whole || !(1..=4).contains(&own.width) || !own.name.starts_with('_') {
+            return Err(SceneError::Attribute(geometry.name.clone(), own.name.clone()));
+        }
+    }
+    Ok(())
 }
 
 fn check_tangents(geometry: &Geometry) -> Result<(), SceneError> {

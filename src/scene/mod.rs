@@ -93,6 +93,8 @@ pub struct Geometry {
     pub tangents: Option<Vec<[f32; 4]>>,
     /// Second texture coordinates, by which no two places share a place of a picture.
     pub lightmap: Option<Lightmap>,
+    /// Attributes that games read themselves.
+    pub attributes: Vec<VertexAttribute>,
     /// For each point of the mesh the joints that carry it, as indices of the skin's joints.
     pub influences: Option<Vec<Influences>>,
     /// States that weights bring its vertices to.
@@ -112,6 +114,21 @@ pub struct Lightmap {
     pub charts: u32,
     /// For each vertex its place, from 0 to 1; v grows downwards.
     pub places: Vec<[f32; 2]>,
+}
+
+/// Numbers at vertices, under a name that the format leaves to games.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VertexAttribute {
+    /// Its name: an underscore, then capital letters, digits and underscores.
+    pub name: String,
+    /// Numbers at a vertex, one to four.
+    pub width: usize,
+    /// Whether they are bytes of 0 to 1; floats if not.
+    pub bytes: bool,
+    /// Those of each vertex of the mesh, one after the other.
+    pub values: Vec<f32>,
+    /// Those of each point of the wire.
+    pub of_lines: Vec<f32>,
 }
 
 /// How levels of detail stand in a file.

@@ -240,3 +240,35 @@ def test_colors_of_elements_blend_by_their_shares(kiln: Kiln) -> None:
     wanted /= shares.sum(axis=0)[:, None]
     np.testing.assert_allclose(shades[:, :3], wanted, atol=1e-5)
     assert len(np.unique(np.round(shades, 3), axis=0)) > 100
+
+
+@pytest.mark.parametrize("profile", ["core", "three"])
+def test_attributes_of_games_are_their_formulas(kiln: Kiln, profile: str) -> None:
+    """At each written vertex, computed here from place, normal and texture coordinates; bytes within half a step."""
+    spec = (
+        "tolerance = 0.001\n[lod]\nlevels = 2\n[shape.s]\nrotate = [0, 90, 0]\nat = [3, 0, 0]\n"
+        'attributes = { _WAY = ["= x", "= y * y", "= nz"], _UV = "= u + 2 * v", '
+        '_SHARE = { formula = "= 2 * y", form = "byte" } }\n'
+        "[shape.s.revolve]\nprofile = { bezier = { points = [[0.2, 0], [0.9, 0.3], [0.8, 0.7], [0.4, 1]] } }\ncaps = false\n"
+    )
+    kiln.write(spec)
+    done = kiln.run("bake", "model.toml", "--out", "out", "--profile", profile)
+    assert done.returncode == 0, done.stdout + done.stderr
+    asset = kiln.baked("model" if profile == "core" else f"model.{profile}")
+    grid = asset.report.get("grid")
+    for mesh in asset.document.meshes:
+        for one in mesh.primitives:
+            places = one.attributes["POSITION"].astype(float)
+            if grid:
+                places = places * grid["step"] + np.array(grid["offset"])
+            normals = one.attributes["NORMAL"].astype(float) / (127.0 if grid else 1.0)
+            uv = one.attributes["TEXCOORD_0"].astype(float) / (65535.0 if grid else 1.0)
+            # Back through the placement: 3 along x, then a quarter turn about y, which brings x to -z and z to x.
+            x, y, nz = -places[:, 2], places[:, 1], normals[:, 0]
+            way = one.attributes["_WAY"].astype(float)
+            np.testing.assert_allclose(way[:, 0], x, atol=2e-6)
+            np.testing.assert_allclose(way[:, 1], y * y, atol=2e-6)
+            np.testing.assert_allclose(way[:, 2], nz, atol=0.01 if grid else 2e-6)
+            np.testing.assert_allclose(one.attributes["_UV"].ravel(), uv @ [1, 2], atol=5e-5 if grid else 2e-6)
+            share = one.attributes["_SHARE"].astype(float).ravel() / 255.0
+            np.testing.assert_allclose(share, np.clip(2 * y, 0, 1), atol=0.5 / 255 + 1e-6)

@@ -459,6 +459,12 @@ codes! {
 
     /// a file scaled along one axis more than along another
     UnevenScale = "K1056";
+    /// a name that no attribute of vertices can have
+    AttributeName = "K1057";
+    /// an attribute of vertices that is in no file
+    UnseenAttribute = "K1058";
+    /// attributes of vertices that an engine does not read
+    EngineAttributes = "K1059";
 
     /// nodes whose aims depend on each other
     AimCircle = "K1070";

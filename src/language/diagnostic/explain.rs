@@ -565,6 +565,15 @@ examples! {
     UnevenScale: "All that a file holds is made larger by one number. Bodies of physics, lights and the bones of skins cannot be stretched along one axis alone.",
         "[output]\nscale = [1, 2, 1]\n[shape.a.sphere]\nradius = 1" =>
         "[output]\nscale = 100\n[shape.a.sphere]\nradius = 1";
+    AttributeName: "The format has names of its own for attributes of vertices. All others begin with an underscore, and consist of capital letters, digits and underscores.",
+        "[shape.a]\nattributes = { wind = \"= y\" }\n[shape.a.sphere]\nradius = 1" =>
+        "[shape.a]\nattributes = { _WIND = \"= y\" }\n[shape.a.sphere]\nradius = 1";
+    UnseenAttribute: "Attributes of vertices belong to the shape that a node shows, with all its parts: a file has them for whole meshes. On a shape that is only a part of others they would be lost.",
+        "[shape.a.group]\nof = [\"b\"]\n[shape.b]\nattributes = { _WIND = \"= y\" }\n[shape.b.sphere]\nradius = 1" =>
+        "[shape.a]\nattributes = { _WIND = \"= y\" }\n[shape.a.group]\nof = [\"b\"]\n[shape.b.sphere]\nradius = 1";
+    EngineAttributes: "Attributes with names of their own are read by three.js, Blender and, where the game registers them, Bevy. The importers of Godot, Unreal, Unity and Babylon.js leave them out.",
+        "[output]\nprofiles = [\"godot\"]\n[shape.a]\nattributes = { _WIND = \"= y\" }\n[shape.a.sphere]\nradius = 1" =>
+        "[output]\nprofiles = [\"bevy\"]\n[shape.a]\nattributes = { _WIND = \"= y\" }\n[shape.a.sphere]\nradius = 1";
     AimCircle: "A node is turned to what it looks at, and turns what it carries. So it cannot look at what it carries itself, nor can two nodes each carry what the other looks at.",
         "[shape.a.sphere]\nradius = 1\n[node.n]\nshape = \"a\"\naim = \"m\"\n[node.m]\nparent = \"n\"\nat = [1, 0, 0]" =>
         "[shape.a.sphere]\nradius = 1\n[node.n]\nshape = \"a\"\naim = \"m\"\n[node.m]\nat = [1, 0, 0]";

@@ -4,7 +4,9 @@ use indexmap::IndexMap;
 
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::document::parameters::{FormulaOrValue, Parameters};
-use crate::language::expression::{Computed, FUNCTIONS, SURFACE_VARIABLES, VARIABLES, body};
+use crate::language::expression::{
+    ATTRIBUTE_VARIABLES, Computed, FUNCTIONS, SURFACE_VARIABLES, VARIABLES, body,
+};
 use crate::language::source::{SourceMap, Span};
 use crate::language::spec::{ParameterValue, Sp, backtick, check_name};
 use crate::language::suggest::closest;
@@ -154,6 +156,9 @@ const TAKES_FORMULAS: [&str; 3] = ["formula", "implicit", "parametric"];
 /// The name under which formulas speak of normals too.
 const OF_SURFACES: &str = "vertex-color";
 
+/// The name of a table under whose names formulas speak of normals and weights too.
+const OF_ATTRIBUTES: &str = "attributes";
+
 /// Where a value stands in the document.
 #[derive(Clone, Copy)]
 struct Place {
@@ -167,6 +172,8 @@ struct Place {
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Level {
+    /// In the table of attributes, each of which is as if it had one of these names.
+    Outside,
     Named,
     Inside,
 }
@@ -178,18 +185,27 @@ impl Place {
     /// a definition, which may well be called so.
     fn entry(self, name: &str) -> Self {
         let surface = name == OF_SURFACES;
-        let formula = if (surface || TAKES_FORMULAS.contains(&name)) && self.depth >= 2 {
+        let attributes = name == OF_ATTRIBUTES && self.depth >= 2;
+        let outside = self.formula == Some(Level::Outside);
+        let formula = if attributes {
+            Some(Level::Outside)
+        } else if outside || ((surface || TAKES_FORMULAS.contains(&name)) && self.depth >= 2) {
             Some(Level::Named)
         } else if self.formula == Some(Level::Named) {
             Some(Level::Inside)
         } else {
             None
         };
-        let inherited = if formula == Some(Level::Inside) { self.variables } else { VARIABLES };
+        let inside = formula == Some(Level::Inside) || outside;
+        let inherited = if inside { self.variables } else { VARIABLES };
         Self {
             depth: self.depth + 1,
             formula,
-            variables: if surface { SURFACE_VARIABLES } else { inherited },
+            variables: match name {
+                OF_SURFACES => SURFACE_VARIABLES,
+                _ if attributes => ATTRIBUTE_VARIABLES,
+                _ => inherited,
+            },
         }
     }
 }

@@ -14,6 +14,9 @@ pub const VARIABLES: &[&str] = &["t", "u", "v", "x", "y", "z"];
 /// Those of a formula over the places of a surface and its normals there.
 pub const SURFACE_VARIABLES: &[&str] = &["t", "u", "v", "x", "y", "z", "nx", "ny", "nz"];
 
+/// Those of an attribute of vertices.
+pub const ATTRIBUTE_VARIABLES: &[&str] = &["t", "u", "v", "x", "y", "z", "nx", "ny", "nz", "weight"];
+
 /// An expression with variables, its parameters put in.
 #[derive(Clone, Debug)]
 pub struct Formula {

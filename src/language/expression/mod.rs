@@ -14,7 +14,7 @@ mod token;
 
 pub use evaluate::{Evaluator, Scope};
 pub use fault::Fault;
-pub use formula::{Formula, SURFACE_VARIABLES, VARIABLES};
+pub use formula::{ATTRIBUTE_VARIABLES, Formula, SURFACE_VARIABLES, VARIABLES};
 pub use function::{FUNCTIONS, Function};
 pub use parse::{Expression, parse};
 

@@ -2,6 +2,7 @@
 
 mod arc;
 mod assertion;
+mod attribute;
 mod baked;
 mod bezier_triangle;
 mod bspline;
@@ -83,6 +84,7 @@ mod wire;
 pub use crate::language::suggest::closest;
 pub use arc::{Arc, CenterArc};
 pub use assertion::{Assertion, Demand, Expected};
+pub use attribute::{Attribute, AttributeForm, Attributes, Components};
 pub use baked::{Lightmap, Occlusion};
 pub use bezier_triangle::BezierTriangles;
 pub use bspline::{BSpline, Nurbs};

@@ -85,6 +85,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
         &[
             "shape",
             "vertex-color",
+            "attribute",
             "occlusion",
             "lightmap",
             "box",

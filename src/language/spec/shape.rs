@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 use serde_json::Value as Json;
 
+use crate::language::spec::attribute::Attributes;
 use crate::language::spec::baked::{Lightmap, Occlusion};
 use crate::language::spec::bezier_triangle::BezierTriangles;
 use crate::language::spec::check::Check;
@@ -74,6 +75,9 @@ table! {
         occlusion: Option<Sp<Occlusion>>;
         /// Second texture coordinates, by which no two places of the shape share a place of a picture: for light that is baked.
         lightmap: Option<Sp<Lightmap>>;
+        /// Attributes of vertices that games read themselves, by their names: an underscore and capital letters, as in
+        /// `_WIND = "= y / 2"`. A formula, a list of up to four, or a table. Only of shapes that nodes show.
+        attributes: Attributes;
         /// The name of its material.
         material: Option<Sp<MaterialName>>;
         /// Factor of size: a number, or one for each axis. Applied before `rotate` and `at`.
