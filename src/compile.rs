@@ -16,6 +16,7 @@ mod profile;
 mod solid;
 mod state;
 mod subdivide;
+mod texture;
 
 use file::{file_name, same_file};
 use notice::noticed;
@@ -237,6 +238,7 @@ impl Made<'_> {
             warnings.push(too_coarse(profile, &coarse, spec));
         }
         realize::normal_maps(&built.model, &mut scene, &shapes).map_err(|errors| refusals(built, errors))?;
+        texture::fit(&mut scene, spec, profile)?;
         lod::settle(&mut scene, &mut shapes);
         realize::attributes(&built.model, &mut scene, &shapes).map_err(|errors| refusals(built, errors))?;
         // What encloses a shape encloses its written places.

@@ -41,6 +41,7 @@ mod shapes;
 mod solids;
 mod subdivisions;
 mod sweeps;
+mod textures;
 mod triangles;
 mod trimmed;
 mod wires;

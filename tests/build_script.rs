@@ -161,7 +161,7 @@ fn errors_are_told_together_and_the_module_stays() {
     fs::write(assets.join("chess/pawn.toml"), "[shape.a.box]\nsize = [0, 1, 1]").expect("written");
     let failure = build.bake().expect_err("two documents are wrong");
     let all = failure.to_string();
-    assert!(all.contains("radios") && all.contains("--> vase.toml:5:1"), "{all}");
+    assert!(all.contains("radios") && all.contains("--> vase.toml:6:1"), "{all}");
     assert!(all.contains("--> chess/pawn.toml:2:"), "{all}");
     assert_eq!(fs::read(out.join("assets.rs")).expect("written"), module);
     assert!(failure.inputs.contains(&assets.join("common/clay.toml")));

@@ -361,7 +361,7 @@ fn the_bytes_depend_on_the_input_alone() {
     for (profile, codec) in
         [(Profile::Core, Codec::Zero), (Profile::Web, Codec::Zero), (Profile::Web, Codec::One)]
     {
-        let options = Options { profile, codec, tolerance: None };
+        let options = Options { profile, codec, ..Options::default() };
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
             pool.install(|| made(&bytes, &options).expect("the file is right").bytes)
@@ -536,4 +536,80 @@ fn files_that_are_cut_off_or_changed_are_files_or_faults() {
             assert!(made(&again.bytes, &options).is_ok(), "changed at {at}");
         }
     }
+}
+
+/// A triangle is shorter as it is than with words about whole numbers and compressed views; a sheet is not.
+#[test]
+fn files_of_a_few_triangles_do_not_grow() {
+    for (side, plain) in [(1, true), (60, false)] {
+        let mut file = File::new();
+        let positions = file.floats(&sheet(side, 0.0), 3);
+        file.shown("a", json!([{ "attributes": { "POSITION": positions } }]));
+        let bytes = file.bytes();
+        let options = Options { profile: Profile::Web, shortest: true, ..Options::default() };
+        let read = Read::of(&made(&bytes, &options).expect("the file is right"));
+        assert_eq!(read.shipped.get("extensionsRequired").is_none(), plain, "{side}");
+        assert_eq!(read.report.notes.len(), usize::from(plain), "{:?}", read.report.notes);
+        let longer = made(&bytes, &Options { shortest: false, ..options }).expect("the file is right");
+        assert!(read.report.bytes.after <= longer.bytes.len() as u64);
+    }
+}
+
+/// Colors, normals and numbers, each in its own way; what no reader here knows, and what is small enough, stays.
+#[test]
+fn pictures_are_made_smaller_where_that_is_asked_for() {
+    use kiln::import::image::{Pixels, pixels, png};
+    let checks = |size: u32| {
+        let rgba = (0..size * size)
+            .map(|k| if (k % size + k / size).is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] });
+        png(&Pixels { width: size, height: size, rgba: rgba.collect() }, false)
+    };
+    let mut file = File::new();
+    let positions = file.floats(&sheet(4, 0.0), 3);
+    file.shown("a", json!([{ "attributes": { "POSITION": positions }, "material": 0 }]));
+    let data = |bytes: &[u8]| {
+        let mut text = "data:image/png;base64,".to_owned();
+        text.push_str(&base64(bytes));
+        json!({ "uri": text })
+    };
+    file.json["images"] =
+        json!([data(&checks(64)), data(&checks(64)), data(&checks(8)), data(b"\xabKTX 20\xbb rest")]);
+    file.json["textures"] = json!([{ "source": 0 }, { "source": 1 }, { "source": 2 }, { "source": 3 }]);
+    file.json["materials"] = json!([{
+        "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 }, "metallicRoughnessTexture": { "index": 1 } },
+        "occlusionTexture": { "index": 2 },
+        "emissiveTexture": { "index": 3 },
+    }]);
+    let options = Options { texture_size: Some(16), compress_textures: true, ..Options::default() };
+    let read = Read::of(&made(&file.bytes(), &options).expect("the file is right"));
+    let images = read.json["images"].as_array().expect("pictures");
+    let picture = |image: usize| {
+        let view = images[image]["bufferView"].as_u64().and_then(|view| usize::try_from(view).ok());
+        pixels(read.view(view.expect("a view")), 1 << 20)
+    };
+    let (color, numbers, small) = (picture(0), picture(1), picture(2));
+    let (color, numbers) = (color.expect("a picture"), numbers.expect("a picture"));
+    assert_eq!(([color.width, color.height], [numbers.width, numbers.height]), ([16, 16], [16, 16]));
+    assert_eq!(color.rgba[35], [188, 188, 188, 255], "as light");
+    assert!(numbers.rgba[35][0].abs_diff(128) <= 1, "as numbers");
+    assert_eq!(small.expect("a picture").width, 8);
+    assert_eq!(images[3]["mimeType"], "image/ktx2");
+    // What is broken is told.
+    file.json["images"][0] = data(&checks(64)[..100]);
+    let told = made(&file.bytes(), &options).expect_err("cut off");
+    assert!(told.contains("/images/0"), "{told}");
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for three in bytes.chunks(3) {
+        let word = three.iter().fold(0_usize, |word, byte| word << 8 | usize::from(*byte))
+            << (8 * (3 - three.len()));
+        for place in 0..4 {
+            let letter = LETTERS[word >> (18 - 6 * place) & 63];
+            text.push(if place <= three.len() { char::from(letter) } else { '=' });
+        }
+    }
+    text
 }

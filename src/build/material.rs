@@ -2,6 +2,7 @@
 
 use super::Builder;
 use crate::geometry::mesh;
+use crate::import::image::{self, Pixels};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::spec::{self, Alpha, Sp};
 use crate::model::{
@@ -28,9 +29,18 @@ impl Builder<'_> {
     fn build_material(&mut self, name: &str, written: &spec::Material) -> Option<Material> {
         // All textures are looked at before the first fault ends it.
         let color = self.texture(written.color_texture.as_ref());
-        let metallic_roughness = self.texture(written.metallic_roughness_texture.as_ref());
+        let packed = self.packed_texture(name, written);
+        let metallic_roughness = match packed {
+            Some(None) => self.texture(written.metallic_roughness_texture.as_ref()),
+            packed => packed,
+        };
         let normal = self.texture(written.normal_texture.as_ref());
-        let occlusion = self.texture(written.occlusion_texture.as_ref());
+        let occlusion = match (packed, &written.occlusion_texture) {
+            (Some(Some(packed)), Some(own)) if texture_way(&own.value) == (packed.wrap, packed.filter) => {
+                Some(Some(packed))
+            }
+            _ => self.texture(written.occlusion_texture.as_ref()),
+        };
         let emissive = self.texture(written.emissive_texture.as_ref());
         let emitted = written.emissive.map(|color| color.value.linear);
         let without = if written.emissive_texture.is_some() { [1.0; 4] } else { [0.0; 4] };
@@ -62,15 +72,7 @@ impl Builder<'_> {
     fn texture(&mut self, written: Option<&Sp<spec::Texture>>) -> Option<Option<Texture>> {
         let Some(written) = written else { return Some(None) };
         let image = self.image(&written.value)?;
-        let wrap = match written.wrap.value {
-            spec::Wrap::Repeat => Wrap::Repeat,
-            spec::Wrap::Clamp => Wrap::Clamp,
-            spec::Wrap::Mirror => Wrap::Mirror,
-        };
-        let filter = match written.filter.value {
-            spec::Filter::Linear => Filter::Linear,
-            spec::Filter::Nearest => Filter::Nearest,
-        };
+        let (wrap, filter) = texture_way(&written.value);
         Some(Some(Texture { image, wrap, filter }))
     }
 
@@ -97,7 +99,7 @@ impl Builder<'_> {
                 return None;
             }
         };
-        let facts = match crate::import::image::read(&bytes, self.spec.limits.image_pixels) {
+        let facts = match image::read(&bytes, self.spec.limits.image_pixels) {
             Ok(facts) => facts,
             Err(error) => {
                 let message = format!("{} cannot be used as a texture: {error}", file.value.written);
@@ -113,10 +115,58 @@ impl Builder<'_> {
         Some(Image {
             name: stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
             kind: match facts.kind {
-                crate::import::image::Kind::Png => ImageKind::Png,
-                crate::import::image::Kind::Jpeg => ImageKind::Jpeg,
+                image::Kind::Png => ImageKind::Png,
+                image::Kind::Jpeg => ImageKind::Jpeg,
             },
             bytes,
         })
     }
+
+    /// Occlusion, roughness and metallic, each the red of a picture, as red, green and blue of one; the inner `None` where a
+    /// material has them not apart.
+    #[expect(clippy::option_option, reason = "absent and failed are different answers")]
+    fn packed_texture(&mut self, name: &str, written: &spec::Material) -> Option<Option<Texture>> {
+        let [roughness, metallic] = written.packed();
+        let Some(first) = roughness.or(metallic) else { return Some(None) };
+        let (wrap, filter) = texture_way(&first.value);
+        let occlusion =
+            written.occlusion_texture.as_ref().filter(|own| texture_way(&own.value) == (wrap, filter));
+        let mut channels: [Option<Pixels>; 3] = [None, None, None];
+        for (channel, own) in channels.iter_mut().zip([occlusion, roughness, metallic]) {
+            let Some(own) = own else { continue };
+            let loaded = self.load_image(&own.value)?;
+            match image::pixels(&loaded.bytes, self.spec.limits.image_pixels) {
+                Ok(pixels) => *channel = Some(pixels),
+                Err(error) => {
+                    let message = format!("{} cannot be packed: {error}", own.value.file.value.written);
+                    self.report(Diagnostic::error(Code::BadImage, message).at(own.span, "this image"));
+                    return None;
+                }
+            }
+        }
+        let edge = match wrap {
+            Wrap::Repeat => image::Edge::Repeat,
+            Wrap::Clamp => image::Edge::Clamp,
+            Wrap::Mirror => image::Edge::Mirror,
+        };
+        let bytes = image::png(&image::packed(channels, [edge; 2]), false).into();
+        let image = Image { name: format!("{name}-orm"), kind: ImageKind::Png, bytes };
+        self.model.images.push(image);
+        let image = ImageHandle(mesh::index(self.model.images.len()) - 1);
+        Some(Some(Texture { image, wrap, filter }))
+    }
+}
+
+/// How a texture is read.
+fn texture_way(written: &spec::Texture) -> (Wrap, Filter) {
+    let wrap = match written.wrap.value {
+        spec::Wrap::Repeat => Wrap::Repeat,
+        spec::Wrap::Clamp => Wrap::Clamp,
+        spec::Wrap::Mirror => Wrap::Mirror,
+    };
+    let filter = match written.filter.value {
+        spec::Filter::Linear => Filter::Linear,
+        spec::Filter::Nearest => Filter::Nearest,
+    };
+    (wrap, filter)
 }

@@ -500,6 +500,12 @@ pub(crate) struct Optimize {
     /// Version of the compression: 0 for `EXT_meshopt_compression`, 1 for the shorter `KHR_meshopt_compression`
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=1))]
     pub(crate) codec: u8,
+    /// Pixels of the longer side of a picture: larger PNG and JPEG pictures are made smaller, as PNG
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) texture_size: Option<u32>,
+    /// Write PNG pictures anew in the shortest of many ways
+    #[arg(long)]
+    pub(crate) compress_textures: bool,
     /// Write sizes, counts and measured errors as JSON too
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,

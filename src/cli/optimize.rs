@@ -31,6 +31,9 @@ pub(crate) fn run(optimize: &Optimize, printer: &Printer) -> Outcome {
         profile: optimize.profile,
         tolerance: optimize.tolerance,
         codec: if optimize.codec == 1 { Codec::One } else { Codec::Zero },
+        shortest: true,
+        texture_size: optimize.texture_size,
+        compress_textures: optimize.compress_textures,
     };
     let folder = optimize.file.parent().unwrap_or(Path::new("")).to_path_buf();
     let made = match repacked(&bytes, &options, &mut |path| beside(&folder, path)) {

@@ -6,7 +6,7 @@
 use crate::gltf::Profile;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
-use crate::language::spec::{Clip, ColliderForm, Definition, LodForm, Spec};
+use crate::language::spec::{Clip, ColliderForm, Definition, LodForm, ShapeDefinition, Spec};
 
 /// How levels of detail stand in the files of a profile: as the document says, else by the extension where that is read or the
 /// file is for everyone, and in files of their own for engines that take one level a file.
@@ -81,17 +81,7 @@ pub(super) fn unread(profile: Profile, spec: &Spec) -> Vec<Diagnostic> {
         );
     }
     found.extend(unread_properties(profile, engine, spec));
-    let attributes = spec.shapes.values().find_map(|shape| shape.value.options.attributes.0.first());
-    if let Some((name, attribute)) = attributes
-        && matches!(profile, Profile::Godot | Profile::Unreal | Profile::Unity | Profile::Babylon)
-    {
-        let message = format!("{engine} leaves out attributes of names of their own, such as `{name}`");
-        found.push(
-            Diagnostic::warning(Code::EngineAttributes, message)
-                .at(attribute.span, "this attribute")
-                .help("write what it says into `vertex-color`, which every engine reads"),
-        );
-    }
+    found.extend(unread_attributes((profile, engine), spec));
     if profile == Profile::Godot {
         found.extend(changed_by_godot(spec));
     }
@@ -121,6 +111,30 @@ fn unread_properties(profile: Profile, engine: &str, spec: &Spec) -> Vec<Diagnos
 /// Whether the loader of an engine plays changes of properties.
 fn plays_properties(profile: Profile) -> bool {
     profile.engine().is_none() || matches!(profile, Profile::Babylon | Profile::Blender | Profile::Godot)
+}
+
+/// Attributes of names of their own that an engine leaves out, or mixes up.
+fn unread_attributes((profile, engine): (Profile, &str), spec: &Spec) -> Option<Diagnostic> {
+    let several = usize::from(profile == Profile::Blender);
+    let own = |shape: &Definition<ShapeDefinition>| {
+        let (name, attribute) = shape.value.options.attributes.0.get_index(several)?;
+        Some((name.clone(), attribute.span))
+    };
+    let (name, span) = spec.shapes.values().find_map(own)?;
+    let (message, help) = match profile {
+        Profile::Godot | Profile::Unreal | Profile::Unity | Profile::Babylon => (
+            format!("{engine} leaves out attributes of names of their own, such as `{name}`"),
+            "write what it says into `vertex-color`, which every engine reads",
+        ),
+        Profile::Blender => (
+            format!(
+                "{engine} 4.5 fails on several attributes of names of their own, or mixes them up: `{name}`"
+            ),
+            "write one attribute of up to four formulas",
+        ),
+        _ => return None,
+    };
+    Some(Diagnostic::warning(Code::EngineAttributes, message).at(span, "this attribute").help(help))
 }
 
 /// Ends of names by which Godot makes something else of a node.

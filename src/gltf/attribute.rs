@@ -1,6 +1,7 @@
 //! Attributes that games read themselves, under names of their own: floats, or bytes; read back as the range that they span.
 //!
-//! Elements begin on multiples of four, as the format demands of vertices.
+//! Elements begin on multiples of four, as the format demands of vertices: bytes are always four, those that nothing is said of 0.
+//! Blender's importer fails on one of them, and leaves out two and three.
 
 use std::collections::BTreeMap;
 
@@ -29,10 +30,9 @@ pub(super) fn written(
 }
 
 fn one(root: &mut Root, binary: &mut Binary, own: &VertexAttribute, values: &[f32]) -> Index<Accessor> {
-    let shape = [Type::Scalar, Type::Vec2, Type::Vec3, Type::Vec4][own.width - 1];
     let count = values.len() / own.width;
     if own.bytes {
-        let elements = Elements { component: ComponentType::U8, shape, count };
+        let elements = Elements { component: ComponentType::U8, shape: Type::Vec4, count };
         let made = binary.attribute(root, elements, Content::Attributes { stride: 4 }, |bytes| {
             for element in values.chunks_exact(own.width) {
                 let mut word = [0; 4];
@@ -43,6 +43,7 @@ fn one(root: &mut Root, binary: &mut Binary, own: &VertexAttribute, values: &[f3
         root.accessors[made.value()].normalized = true;
         return made;
     }
+    let shape = [Type::Scalar, Type::Vec2, Type::Vec3, Type::Vec4][own.width - 1];
     let (elements, stride) = (Elements { component: ComponentType::F32, shape, count }, 4 * own.width);
     if binary.is_compressed() {
         let wide: Vec<f64> = values.iter().copied().map(f64::from).collect();

@@ -14,7 +14,9 @@ use super::buffer::{Binary, Content, Elements, at, index_accessors, index_width}
 use super::color::colors;
 use super::position::positions;
 use super::profile::Profile;
-use super::{attribute, carrier, collider, duplicate, lines, manifold, material, morph, motion, pointer, view};
+use super::{
+    attribute, carrier, collider, duplicate, lines, manifold, material, morph, motion, pointer, view,
+};
 use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
 use crate::geometry::number::{floor_count, size};

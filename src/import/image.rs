@@ -3,6 +3,14 @@
 //! A picture is checked row by row, so that even the largest takes little memory, and its size is held against the
 //! limit before anything is decoded.
 
+mod encode;
+mod fit;
+mod resize;
+
+pub use encode::{png, shorter};
+pub use fit::{Wish, fitted, packed};
+pub use resize::{Edge, Meaning, resized, within};
+
 use std::io::Cursor;
 
 use serde::Serialize;

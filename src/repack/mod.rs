@@ -22,6 +22,7 @@ mod pin;
 mod report;
 mod set;
 mod stream;
+mod texture;
 
 use gltf::json::accessor::ComponentType;
 use serde_json::{Value, json};
@@ -49,6 +50,13 @@ pub struct Options {
     pub tolerance: Option<f64>,
     /// How views are compressed, where the profile has them compressed.
     pub codec: Codec,
+    /// Whether a file that the profile would make longer than it was is written plainer: what is said of whole numbers and of
+    /// compressed views costs more than they save in a file of a few triangles. Whoever reads the profile reads that too.
+    pub shortest: bool,
+    /// Pixels of the longer side of a PNG or JPEG picture, at most.
+    pub texture_size: Option<u32>,
+    /// Whether PNG pictures are written anew in the shortest of many ways.
+    pub compress_textures: bool,
 }
 
 /// A file and what came of it.
@@ -70,6 +78,30 @@ const DRACO: &str = "KHR_draco_mesh_compression";
 /// # Errors
 /// The first fault in it.
 pub fn repacked(
+    bytes: &[u8],
+    options: &Options,
+    open: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+) -> Result<Repacked, Fault> {
+    let mut best = passed(bytes, options, open)?;
+    for profile in [Profile::Quantized, Profile::Core] {
+        let plainer = (options.profile.is_compressed() && profile == Profile::Quantized)
+            || (options.profile.is_quantized() && profile == Profile::Core);
+        if !options.shortest || !plainer || best.report.bytes.after <= best.report.bytes.before {
+            continue;
+        }
+        let made = passed(bytes, &Options { profile, ..*options }, open)?;
+        if made.bytes.len() < best.bytes.len() {
+            best = made;
+            let note =
+                format!("written as for profile `{}`, which is shorter for so small a file", profile.name());
+            best.report.notes.push(note);
+        }
+    }
+    Ok(best)
+}
+
+/// All passes, one after the other.
+fn passed(
     bytes: &[u8],
     options: &Options,
     open: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
@@ -120,7 +152,7 @@ pub fn repacked(
     node::copies(&mut made, &source, &mut output)?;
     node::carriers(&mut made, &places);
     let picture_bytes = pictures.read;
-    picture::write(&mut made, (&source, &pins), pictures, &mut output);
+    picture::write(&mut made, (&source, &pins), (pictures, options), &mut output)?;
     duplicate::merge(&mut made, &pins);
     let finished = output.finish(&root);
     for (name, all) in

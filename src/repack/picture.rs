@@ -8,6 +8,7 @@ use super::accessor::Source;
 use super::document::{Fault, Object, list, list_mut, whole};
 use super::pin::Pins;
 use super::stream::Output;
+use super::{Options, texture};
 use crate::import::gltf::buffer_of;
 
 /// Pictures, in memory.
@@ -68,15 +69,19 @@ fn mime(bytes: &[u8], image: &Value) -> Option<String> {
     found.or(webp).or_else(|| image.get("mimeType").and_then(Value::as_str).map(str::to_owned))
 }
 
-/// Writes the pictures.
+/// Writes the pictures, as small as is asked for.
+///
+/// # Errors
+/// A picture that is broken and was to be made smaller.
 pub(super) fn write(
     made: &mut Object,
     (source, pins): (&Source<'_>, &Pins),
-    pictures: Pictures,
+    (pictures, options): (Pictures, &Options),
     output: &mut Output,
-) {
+) -> Result<(), Fault> {
+    let uses = texture::uses(source.root);
     let mut known: HashMap<Vec<u8>, usize> = HashMap::new();
-    for (image, own) in list_mut(made, "images").iter_mut().zip(pictures.own) {
+    for (index, (image, own)) in list_mut(made, "images").iter_mut().zip(pictures.own).enumerate() {
         let Some(image) = image.as_object_mut() else { continue };
         let number = whole(&Value::Object(image.clone()), "bufferView");
         let (bytes, told) = match (own, number) {
@@ -94,6 +99,13 @@ pub(super) fn write(
             }
             (None, None) => continue,
         };
+        let bytes = match texture::fit((index, &bytes), uses[index], options)? {
+            Some(smaller) => {
+                image.insert("mimeType".to_owned(), json!("image/png"));
+                smaller
+            }
+            None => bytes,
+        };
         let view = match known.get(&bytes) {
             Some(view) => *view,
             None => {
@@ -104,4 +116,5 @@ pub(super) fn write(
         };
         image.insert("bufferView".to_owned(), json!(view));
     }
+    Ok(())
 }

@@ -58,7 +58,7 @@ fn formulas_speak_of_the_shape_before_its_placement_on_every_level_in_every_prof
 
 #[test]
 fn weights_and_texture_coordinates_and_lines_have_attributes() {
-    let text = "tolerance = 0.01\n[shape.arm]\nattributes = { _HIGH = { joint = \"high\" }, _REST = { formula = \"= 1 - weight\", joint = \"high\" }, _U = \"= u\" }\n[shape.arm.capsule]\nradius = 0.2\nheight = 1\n[skeleton.s.joint.low]\nhead = [0, -0.5, 0]\ntail = [0, 0, 0]\n[skeleton.s.joint.high]\nparent = \"low\"\ntail = [0, 0.5, 0]\n[skin.k]\nshape = \"arm\"\nskeleton = \"s\"\nweights = \"rigid\"\n[shape.line]\nattributes = { _AT = \"= x\" }\n[shape.line.wire]\nof = [{ line = { from = [0, 0], to = [3, 0] } }]\n[node.arm]\nshape = \"arm\"\n[node.line]\nshape = \"line\"\n";
+    let text = "tolerance = 0.01\n[shape.arm]\nattributes = { _HIGH = { joint = \"high\" }, _REST = { formula = \"= 1 - weight\", joint = \"high\" }, _U = \"= u\" }\n[shape.arm.capsule]\nradius = 0.2\nheight = 1\n[skeleton.s.joint.low]\nhead = [0, -0.5, 0]\ntail = [0, 0, 0]\n[skeleton.s.joint.high]\nparent = \"low\"\ntail = [0, 0.5, 0]\n[skin.k]\nshape = \"arm\"\nskeleton = \"s\"\nweights = \"rigid\"\n[shape.line]\nattributes = { _AT = \"= x\" }\n[shape.line.wire]\ncurves = [{ line = { from = [0, 0], to = [3, 0] } }]\n[node.arm]\nshape = \"arm\"\n[node.line]\nshape = \"line\"\n";
     let compiled = made(text, &[Profile::Core]).remove(0);
     for (name, low, high) in [("_HIGH", 0.0, 1.0), ("_REST", 0.0, 1.0), ("_U", 0.0, 1.0)] {
         let found = range(&compiled, "arm", name);
@@ -75,5 +75,10 @@ fn engines_that_leave_attributes_out_are_told() {
         let found = made(text, &[profile]).remove(0).warnings.into_vec();
         let told = found.iter().any(|one| one.code == Code::EngineAttributes);
         assert_eq!(told, ["godot", "unreal", "unity", "babylon"].contains(&name), "{name}");
+    }
+    let two = text.replace(" }", ", _SHARE = 1 }");
+    for (profile, several) in [(Profile::Blender, true), (Profile::Three, false), (Profile::Bevy, false)] {
+        let found = made(&two, &[profile]).remove(0).warnings.into_vec();
+        assert_eq!(found.iter().any(|one| one.code == Code::EngineAttributes), several);
     }
 }

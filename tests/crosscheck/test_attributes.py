@@ -249,7 +249,8 @@ def test_attributes_of_games_are_their_formulas(kiln: Kiln, profile: str) -> Non
         "tolerance = 0.001\n[lod]\nlevels = 2\n[shape.s]\nrotate = [0, 90, 0]\nat = [3, 0, 0]\n"
         'attributes = { _WAY = ["= x", "= y * y", "= nz"], _UV = "= u + 2 * v", '
         '_SHARE = { formula = "= 2 * y", form = "byte" } }\n'
-        "[shape.s.revolve]\nprofile = { bezier = { points = [[0.2, 0], [0.9, 0.3], [0.8, 0.7], [0.4, 1]] } }\ncaps = false\n"
+        "[shape.s.revolve]\ncaps = false\n"
+        "profile = { bezier = { points = [[0.2, 0], [0.9, 0.3], [0.8, 0.7], [0.4, 1]] } }\n"
     )
     kiln.write(spec)
     done = kiln.run("bake", "model.toml", "--out", "out", "--profile", profile)
@@ -270,5 +271,5 @@ def test_attributes_of_games_are_their_formulas(kiln: Kiln, profile: str) -> Non
             np.testing.assert_allclose(way[:, 1], y * y, atol=2e-6)
             np.testing.assert_allclose(way[:, 2], nz, atol=0.01 if grid else 2e-6)
             np.testing.assert_allclose(one.attributes["_UV"].ravel(), uv @ [1, 2], atol=5e-5 if grid else 2e-6)
-            share = one.attributes["_SHARE"].astype(float).ravel() / 255.0
+            share = one.attributes["_SHARE"].astype(float)[:, 0] / 255.0
             np.testing.assert_allclose(share, np.clip(2 * y, 0, 1), atol=0.5 / 255 + 1e-6)

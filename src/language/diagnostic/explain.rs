@@ -571,7 +571,7 @@ examples! {
     UnseenAttribute: "Attributes of vertices belong to the shape that a node shows, with all its parts: a file has them for whole meshes. On a shape that is only a part of others they would be lost.",
         "[shape.a.group]\nof = [\"b\"]\n[shape.b]\nattributes = { _WIND = \"= y\" }\n[shape.b.sphere]\nradius = 1" =>
         "[shape.a]\nattributes = { _WIND = \"= y\" }\n[shape.a.group]\nof = [\"b\"]\n[shape.b.sphere]\nradius = 1";
-    EngineAttributes: "Attributes with names of their own are read by three.js, Blender and, where the game registers them, Bevy. The importers of Godot, Unreal, Unity and Babylon.js leave them out.",
+    EngineAttributes: "Attributes with names of their own are read by three.js, Blender and, where the game registers them, Bevy. The importers of Godot, Unreal, Unity and Babylon.js leave them out, and that of Blender 4.5 fails on more than one of a mesh.",
         "[output]\nprofiles = [\"godot\"]\n[shape.a]\nattributes = { _WIND = \"= y\" }\n[shape.a.sphere]\nradius = 1" =>
         "[output]\nprofiles = [\"bevy\"]\n[shape.a]\nattributes = { _WIND = \"= y\" }\n[shape.a.sphere]\nradius = 1";
     AimCircle: "A node is turned to what it looks at, and turns what it carries. So it cannot look at what it carries itself, nor can two nodes each carry what the other looks at.",

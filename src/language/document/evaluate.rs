@@ -196,7 +196,7 @@ impl Place {
         } else {
             None
         };
-        let inside = formula == Some(Level::Inside) || outside;
+        let inside = formula.is_some() && self.formula.is_some();
         let inherited = if inside { self.variables } else { VARIABLES };
         Self {
             depth: self.depth + 1,

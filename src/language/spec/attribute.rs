@@ -23,7 +23,8 @@ choices! {
     AttributeForm {
         /// In single precision; compressed files keep 16 bits of the greatest.
         Float = "float";
-        /// In a byte each, for numbers from 0 to 1 in steps of 1/255. What is beyond is held back.
+        /// In a byte each, for numbers from 0 to 1 in steps of 1/255. What is beyond is held back. A file always has four; those
+        /// without a formula are 0.
         Byte = "byte";
     }
 }
@@ -97,7 +98,7 @@ impl Read for Attributes {
         let mut read = IndexMap::with_capacity(table.entries.len());
         for (name, entry) in &table.entries {
             let named = check_name(name, entry.key, reader);
-            let own = reader.within(name, |reader| attribute(&entry.value, reader));
+            let own = reader.within_key(name, |reader| attribute(&entry.value, reader));
             read.extend(own.filter(|_| named).map(|own| (name.clone(), own)));
         }
         if table.entries.len() > MOST {

@@ -26,6 +26,11 @@ table! {
         color_texture: Option<Sp<Texture>>;
         /// An image whose green multiplies roughness and whose blue multiplies metallic.
         metallic_roughness_texture: Option<Sp<Texture>>;
+        /// An image whose red multiplies roughness. It is packed into one picture with `metallic-texture` and
+        /// `occlusion-texture`, as the format has it; in place of `metallic-roughness-texture`.
+        roughness_texture: Option<Sp<Texture>>;
+        /// An image whose red multiplies metallic, packed likewise.
+        metallic_texture: Option<Sp<Texture>>;
         /// An image of small bumps, as normals in tangent space.
         normal_texture: Option<Sp<Texture>>;
         /// Strength of the normal texture.
@@ -118,7 +123,39 @@ impl Color {
 }
 
 impl Material {
-    fn check(&self, _: crate::language::source::Span, reader: &mut Reader<'_>) -> bool {
+    fn check(&self, span: crate::language::source::Span, reader: &mut Reader<'_>) -> bool {
+        self.check_alpha(span, reader) && self.check_packed(reader)
+    }
+
+    /// Pictures that are packed into one, which may stand apart.
+    #[must_use]
+    pub fn packed(&self) -> [Option<&Sp<Texture>>; 2] {
+        [self.roughness_texture.as_ref(), self.metallic_texture.as_ref()]
+    }
+
+    fn check_packed(&self, reader: &mut Reader<'_>) -> bool {
+        let apart: Vec<&Sp<Texture>> = self.packed().into_iter().flatten().collect();
+        let report = match (apart.as_slice(), &self.metallic_roughness_texture) {
+            ([one, ..], Some(both)) => Diagnostic::error(
+                Code::Conflict,
+                "roughness and metallic stand in one picture, or in one each, not both",
+            )
+            .at(one.span, "cannot stand beside `metallic-roughness-texture`")
+            .also(both.span, "one picture of both"),
+            ([one, other], None)
+                if (one.value.wrap, one.value.filter) != (other.value.wrap, other.value.filter) =>
+            {
+                Diagnostic::error(Code::Conflict, "pictures that are packed into one are read in one way")
+                    .at(other.span, "other `wrap` or `filter`")
+                    .also(one.span, "than here")
+            }
+            _ => return true,
+        };
+        reader.report(report);
+        false
+    }
+
+    fn check_alpha(&self, _: crate::language::source::Span, reader: &mut Reader<'_>) -> bool {
         let Some(cutoff) = self.alpha_cutoff.filter(|_| self.alpha.value != Alpha::Mask) else { return true };
         let report = Diagnostic::error(Code::Conflict, "`alpha-cutoff` needs `alpha = \"mask\"`")
             .at(cutoff.span, format!("has no effect with \"{}\"", self.alpha.text()))

@@ -129,7 +129,7 @@ pub use morph::{Morph, MorphName, Morphs, ParameterValue};
 pub use node::{Node, SceneImport};
 pub use nurbs_surface::{BSplineSurface, NurbsSurface};
 pub use operation::{Chamfer, Fillet, Offset, OffsetCorner, ProfileSet};
-pub use output::{ByProfile, Forward, Output, OutputProfile, OutputScale, Pivot};
+pub use output::{ByProfile, Forward, Output, OutputProfile, OutputScale, Pivot, TextureSize, Textures};
 pub use page::reference;
 pub use parametric::Parametric;
 pub use part::{CurveGroup, Part};

@@ -79,6 +79,10 @@ pub enum Pivot {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputScale(pub f64);
 
+/// Pixels of the longer side of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TextureSize(pub u32);
+
 /// A setting for all profiles, or for each of some.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ByProfile<T> {
@@ -95,6 +99,18 @@ impl<T> ByProfile<T> {
             Self::All(value) => Some(value),
             Self::Each(all) => all.iter().find(|(profile, _)| is(*profile)).map(|(_, value)| value),
         }
+    }
+}
+
+table! {
+    /// How small the pictures of a file are.
+    "textures" pub Textures {
+        /// Pixels of the longer side, at most: larger pictures are made smaller, colors as light, normals kept unit, without a
+        /// seam where they repeat; what was a JPEG is then a PNG. May be one for each profile.
+        max_size: Option<ByProfile<TextureSize>>;
+        /// Whether PNG files are written anew in the shortest of many ways, where that is shorter. Nothing of them is lost; it
+        /// takes a second for each million pixels.
+        compress: Sp<bool> = false;
     }
 }
 
@@ -118,14 +134,19 @@ table! {
         /// How much larger the file is than the model in metres, more than 0: 100 for centimetres. Lights reach as much further,
         /// and are the brighter for it. 1 when it is not written. May be one for each profile.
         scale: Option<ByProfile<OutputScale>>;
+        /// How small pictures are.
+        textures: Option<Sp<Textures>>;
     }
 }
 
 impl Output {
     /// What a document without the section says.
     pub(crate) const NONE: Self =
-        Self { profiles: None, colliders: None, forward: None, pivot: None, scale: None };
+        Self { profiles: None, colliders: None, forward: None, pivot: None, scale: None, textures: None };
 }
+
+/// Sides of pictures.
+const SIZES: Check = Check::within(1.0, 65536.0);
 
 /// The words of a pivot.
 const PIVOTS: [(&str, Pivot); 3] =
@@ -164,6 +185,19 @@ impl Read for OutputScale {
     fn schema(_: &mut Schemas) -> Json {
         let mut schema = or_expression("number");
         Check::above(0.0).constrain(&mut schema);
+        schema
+    }
+}
+
+impl Read for TextureSize {
+    fn read(value: &Value, reader: &mut Reader<'_>) -> Option<Self> {
+        let read = u32::read(value, reader)?;
+        SIZES.apply(value, reader).then_some(Self(read))
+    }
+
+    fn schema(schemas: &mut Schemas) -> Json {
+        let mut schema = u32::schema(schemas);
+        SIZES.constrain(&mut schema);
         schema
     }
 }

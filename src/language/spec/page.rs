@@ -193,7 +193,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
     (
         "Facts, outputs, assertions and limits",
         "",
-        &["asset", "output", "lod", "collider", "bounds", "limits"],
+        &["asset", "output", "textures", "lod", "collider", "bounds", "limits"],
     ),
 ];
 

@@ -74,7 +74,12 @@ impl<'a> Reader<'a> {
 
     /// Runs `read` with the path one name longer.
     pub(crate) fn within<T>(&mut self, name: &str, read: impl FnOnce(&mut Self) -> T) -> T {
-        self.path.push(Step::Name(name.replace('_', "-")));
+        self.within_key(&name.replace('_', "-"), read)
+    }
+
+    /// Runs `read` with the path one name longer, as a document writes it.
+    pub(crate) fn within_key<T>(&mut self, key: &str, read: impl FnOnce(&mut Self) -> T) -> T {
+        self.path.push(Step::Name(key.to_owned()));
         let result = read(self);
         self.path.pop();
         result
