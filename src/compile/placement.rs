@@ -11,7 +11,8 @@ use crate::geometry::number::Bounds;
 use crate::gltf::Profile;
 use crate::language::spec::{Forward, Pivot, Spec};
 use crate::model::Frame;
-use crate::scene::{Lens, LightKind, Node, Scene};
+use crate::motion::Property;
+use crate::scene::{Lens, LightKind, Node, Owner, PropertyChannel, Scene};
 
 /// A model turned about y, moved and scaled.
 pub(super) struct Placement {
@@ -112,7 +113,39 @@ impl Placement {
             scale: DVec3::splat(self.scale),
         });
         scene.root = Some(root);
+        for animation in &mut scene.animations {
+            animation.reach = animation.reach.map(|reach| self.box_of(reach));
+            animation.bound *= self.scale;
+            animation.tolerance *= self.scale;
+            for channel in &mut animation.properties {
+                scale_channel(channel, &scene.nodes, self.scale);
+            }
+        }
     }
+
+    /// The box around what a box becomes.
+    fn box_of(&self, (min, max): (DVec3, DVec3)) -> (DVec3, DVec3) {
+        let place = |corner: DVec3| self.rotation * (corner - self.pivot) * self.scale;
+        let pick = |k: usize| {
+            DVec3::from_array([0, 1, 2].map(|axis| if k >> axis & 1 == 0 { min[axis] } else { max[axis] }))
+        };
+        let bounds = Bounds::of_points((0..8).map(|k| place(pick(k))));
+        (bounds.min, bounds.max)
+    }
+}
+
+/// What changes how far lights and cameras reach.
+fn scale_channel(channel: &mut PropertyChannel, nodes: &[Node], scale: f64) {
+    let Owner::Node(node) = channel.owner else { return };
+    let sun = nodes[node].light.is_some_and(|light| light.kind == LightKind::Sun);
+    let factor = match channel.property {
+        Property::Range | Property::Height => scale,
+        Property::Intensity if !sun => scale * scale,
+        _ => return,
+    };
+    channel.values.iter_mut().for_each(|value| *value *= factor);
+    channel.bound *= factor;
+    channel.tolerance *= factor;
 }
 
 /// A node above scales places, not what cameras see or how far lights reach. A light that is further away has to be brighter by

@@ -183,8 +183,6 @@ pub(super) fn motion(file: &Read<'_>, written: &Written, model: &Model) -> Resul
         let ends = moving.chain(animation.properties.iter().map(|channel| &channel.times));
         let duration = ends.filter_map(|times| times.last()).copied().fold(0.0, f64::max);
         let time = |k: u32| duration * f64::from(k) / f64::from(POSES - 1);
-        // The model's metres are not the file's where that is scaled.
-        let scale = written.root.map_or(1.0, |root| stage.rest[root].scale.x);
         clips.insert(
             known.name.clone(),
             ClipFacts {
@@ -194,8 +192,8 @@ pub(super) fn motion(file: &Read<'_>, written: &Written, model: &Model) -> Resul
                     + animation.properties.iter().map(|channel| channel.times.len()).sum::<usize>(),
                 properties: properties(animation, known),
                 samples: known.samples,
-                tolerance: known.tolerance * scale,
-                bound: known.bound * scale,
+                tolerance: known.tolerance,
+                bound: known.bound,
                 bounds: stage.bounds(animation, duration),
                 reaches: stage.reaches(animation, model, (&known.name, written.root)),
                 poses: (0..POSES).map(|k| stage.pose(animation, time(k))).collect(),

@@ -87,6 +87,9 @@ def test_all_of_a_model_stands_where_it_is_put(kiln: Kiln, profile: str) -> None
     bounds, found = (one.report["totals"]["bounds"] for one in (plain, made))
     corners = place(np.array([bounds["min"], bounds["max"]]))
     assert np.abs(np.array([found["min"], found["max"]]) - [corners.min(axis=0), corners.max(axis=0)]).max() < 2e-4
+    around, told = (one.document.json["animations"][0]["extras"]["bounds"] for one in (plain, made))
+    corners = place(np.array([around["min"], around["max"]]))
+    assert np.abs(np.array([told["min"], told["max"]]) - [corners.min(axis=0), corners.max(axis=0)]).max() < 1e-2
     done = subprocess.run(
         [sys.executable, str(VERIFY), str(made.path)], capture_output=True, text=True, timeout=300, check=False
     )
