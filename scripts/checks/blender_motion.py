@@ -25,7 +25,10 @@ TO_GLTF = FROM_GLTF.inverted()
 
 @dataclass(frozen=True)
 class Rest:
-    """Where everything is before any clip plays, by name."""
+    """Where everything is before any clip plays, by name; weights by the names of meshes.
+
+    A skinned mesh whose weights a clip moves is an object of its own where the file has the clip, and stays in place.
+    """
 
     items: dict[str, Matrix]
     bones: dict[tuple[str, str], Matrix]
@@ -39,17 +42,18 @@ class Rest:
         return cls(
             {item.name: item.matrix_basis.copy() for item in objects},
             {names: bone.matrix_basis.copy() for names, bone in bones.items()},
-            {(item.name, key.name): key.value for item in objects for key in keys(item)},
+            {(item.data.name, key.name): key.value for item in objects for key in keys(item)},
         )
 
     def restore(self) -> None:
         """Put everything back."""
         for item in bpy.context.scene.objects:
-            item.matrix_basis = self.items[item.name]
+            if item.name in self.items:
+                item.matrix_basis = self.items[item.name]
             for bone in item.pose.bones if item.pose else []:
                 bone.matrix_basis = self.bones[item.name, bone.name]
             for key in keys(item):
-                key.value = self.weights[item.name, key.name]
+                key.value = self.weights[item.data.name, key.name]
 
 
 def keys(item: bpy.types.Object) -> list[bpy.types.ShapeKey]:

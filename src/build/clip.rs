@@ -86,6 +86,15 @@ impl Builder<'_> {
             let frames = Frames { tracks: &own, duration, rate, looped };
             tracks.extend(self.aim_tracks(&frames, span)?.into_iter().map(|track| (track, span)));
         }
+        for (one, span) in self.driven(&tracks) {
+            if !self.check_alone(&one, span, &tracks) {
+                return None;
+            }
+            tracks.push((one, span));
+        }
+        if !self.check_weights(&tracks) {
+            return None;
+        }
         if written.limits.value == LimitRule::Error {
             self.check_limits(&tracks, duration)?;
         }
@@ -215,7 +224,16 @@ impl Builder<'_> {
 
     /// The skeleton that a clip names, or the only one.
     pub(super) fn clip_skeleton(&mut self, clip: &spec::Clip, joint: &Sp<String>) -> Option<usize> {
-        if let Some(skeleton) = &clip.skeleton {
+        self.skeleton_of(clip.skeleton.as_ref(), joint)
+    }
+
+    /// The skeleton that is named, or the only one.
+    pub(super) fn skeleton_of(
+        &mut self,
+        named: Option<&Sp<spec::SkeletonName>>,
+        joint: &Sp<String>,
+    ) -> Option<usize> {
+        if let Some(skeleton) = named {
             return self.named_skeleton(&skeleton.value.0);
         }
         match self.spec.skeletons.len() {
@@ -226,7 +244,7 @@ impl Builder<'_> {
             }
             _ => {
                 let names: Vec<&str> = self.spec.skeletons.keys().map(String::as_str).collect();
-                let report = Diagnostic::error(Code::MissingField, "missing field `skeleton` of clip")
+                let report = Diagnostic::error(Code::MissingField, "missing field `skeleton`")
                     .at(joint.span, "a joint of which one?")
                     .note(format!("skeletons: {}", names.join(", ")));
                 self.report(report);

@@ -110,7 +110,13 @@ impl<'a> Builder<'a> {
             self.model.shapes.push(state);
             self.places.push(span);
             self.faces.push(Vec::new());
-            self.model.morphs.push(Morph { name: target, shape, weight: 0.0, state: State::Shape(handle) });
+            self.model.morphs.push(Morph {
+                name: target,
+                shape,
+                weight: 0.0,
+                driver: None,
+                state: State::Shape(handle),
+            });
             self.morph_places.push(span);
         }
         Some(Played { shape, import, sequences, targets, tags, span })

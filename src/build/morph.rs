@@ -1,10 +1,12 @@
 //! States of the document's shapes.
 
+use super::skeleton::unknown_joint;
 use super::{Builder, StateModel};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, MorphName, Sp, closest};
-use crate::model::{Morph, ShapeHandle, State, Target};
+use crate::model::{ClipTrack, Driver, Morph, ShapeHandle, Space, State, Target};
+use crate::motion::{Axis, Course, Path, Ramp};
 
 /// The most names that are listed.
 const LISTED: usize = 12;
@@ -26,11 +28,67 @@ impl Builder<'_> {
                     self.report(report);
                     continue;
                 }
+                let driver = match &morph.driver {
+                    Some(driver) => match self.driver(driver) {
+                        Some(driver) => Some(driver),
+                        None => continue,
+                    },
+                    None => None,
+                };
                 let (name, weight) = (target.clone(), morph.weight.value);
-                self.model.morphs.push(Morph { name, shape, weight, state });
+                self.model.morphs.push(Morph { name, shape, weight, driver, state });
                 self.morph_places.push(morph.span);
             }
         }
+    }
+
+    /// The joint that drives a state.
+    fn driver(&mut self, written: &spec::MorphDriver) -> Option<Driver> {
+        let skeleton = self.skeleton_of(written.skeleton.as_ref(), &written.joint)?;
+        let bones = &self.model.skeletons[skeleton].skeleton;
+        let Some(joint) = bones.find(&written.joint.value) else {
+            let known = bones.joints.iter().map(|joint| joint.bone.name.as_str());
+            let report = unknown_joint(&written.joint, known, "joint");
+            self.report(report);
+            return None;
+        };
+        let axis = match written.axis.value {
+            spec::DriverAxis::X => Axis::X,
+            spec::DriverAxis::Y => Axis::Y,
+            spec::DriverAxis::Z => Axis::Z,
+        };
+        let ramp = Ramp { axis, from: written.from.value, to: written.to.value };
+        Some(Driver { skeleton, joint, ramp })
+    }
+
+    /// The weights that joints drive in a clip that turns them: a track for each node that shows the shape.
+    pub(super) fn driven(&self, tracks: &[(ClipTrack, Span)]) -> Vec<(ClipTrack, Span)> {
+        let mut all = Vec::new();
+        let mut counts: Vec<(ShapeHandle, usize)> = Vec::new();
+        for morph in &self.model.morphs {
+            // The number of the state among those of its shape.
+            let place = counts.iter().position(|(shape, _)| *shape == morph.shape).unwrap_or_else(|| {
+                counts.push((morph.shape, 0));
+                counts.len() - 1
+            });
+            let target = counts[place].1;
+            counts[place].1 += 1;
+            let Some(driver) = &morph.driver else { continue };
+            let joint = Target::Joint { skeleton: driver.skeleton, joint: driver.joint };
+            let turns = |track: &&(ClipTrack, Span)| {
+                track.0.target == joint && track.0.course.path() == Path::Rotation
+            };
+            let Some((turning, span)) = tracks.iter().find(turns) else { continue };
+            let limits = turning.clamp.as_ref().map(|(limits, _)| *limits);
+            let course = Course::Driven { of: Box::new(turning.course.clone()), limits, ramp: driver.ramp };
+            let shows =
+                (0..self.model.nodes.len()).filter(|node| self.model.nodes[*node].shape == Some(morph.shape));
+            all.extend(shows.map(|node| {
+                let target = Target::Weight { node, target };
+                (ClipTrack { target, course: course.clone(), space: Space::Document, clamp: None }, *span)
+            }));
+        }
+        all
     }
 
     fn state(

@@ -3,6 +3,7 @@
 use super::Builder;
 use super::formula::Compiler;
 use super::skeleton::unknown_joint;
+use crate::geometry::field::{AnyField, Bump};
 use crate::geometry::formula::Formula;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
@@ -28,12 +29,13 @@ impl Builder<'_> {
         let skeleton = self.named_skeleton(&written.skeleton.value.0)?;
         let bones = self.model.skeletons[skeleton].skeleton.clone();
         let chains = &self.spec.skeletons.get(&written.skeleton.value.0)?.value.chain;
-        let explicit: Vec<&Sp<String>> = written.weight.iter().map(|weight| &weight.joint).collect();
+        let given = written.weight.iter().map(|weight| &weight.joint);
+        let given: Vec<&Sp<String>> = given.chain(written.bump.iter().map(|bump| &bump.joint)).collect();
         let named: Vec<&Sp<String>> =
-            if explicit.is_empty() { written.joints.iter().collect() } else { explicit };
+            if given.is_empty() { written.joints.iter().collect() } else { given.clone() };
         let mut joints = Vec::new();
         for name in &named {
-            let found = if chains.contains_key(&name.value) && written.weight.is_empty() {
+            let found = if chains.contains_key(&name.value) && given.is_empty() {
                 chain_joints(&bones, &name.value)
             } else {
                 bones.find(&name.value).into_iter().collect()
@@ -53,6 +55,15 @@ impl Builder<'_> {
                 let (carrying, rule) = self.file_weights(written, &bones)?;
                 joints = carrying;
                 rule
+            }
+            spec::WeightRule::Perturbation => {
+                let bumps = self.skin_bumps(written, &joints)?;
+                joints.sort_unstable();
+                joints.dedup();
+                let place = |joint: usize| joints.binary_search(&joint).unwrap_or(0);
+                WeightRule::Perturbation(
+                    bumps.into_iter().map(|(joint, bump)| (place(joint), bump)).collect(),
+                )
             }
             spec::WeightRule::Explicit => {
                 let formulas = self.weight_formulas(&written.weight)?;
@@ -77,6 +88,15 @@ impl Builder<'_> {
         joints.dedup();
         let smoothing = written.smoothing.value;
         Some(Skin { name: name.to_owned(), shape, skeleton, joints, rule, smoothing })
+    }
+
+    /// For each bump its joint, which was looked up, and what it is.
+    fn skin_bumps(&mut self, written: &spec::Skin, joints: &[usize]) -> Option<Vec<(usize, Bump)>> {
+        let fields: Vec<_> = written.bump.iter().map(|bump| self.field_of(&bump.field)).collect();
+        let of = |((field, bump), joint): ((Option<AnyField>, &spec::SkinBump), &usize)| {
+            Some((*joint, Bump { field: field?, factor: bump.factor.value }))
+        };
+        fields.into_iter().zip(&written.bump).zip(joints).map(of).collect()
     }
 
     fn weight_formulas(&mut self, weights: &[spec::SkinWeight]) -> Option<Vec<Formula>> {

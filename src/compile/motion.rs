@@ -52,6 +52,9 @@ pub(super) fn refused(built: &Built, shape: ShapeHandle, error: &RealizeError) -
             "let a bone of its own run through it, join it to the rest with `union`, or write `weights = \"rigid\"`",
         ),
         (WeightRule::Given(_), _) => report.help("the points of the shape are not those of its file"),
+        (WeightRule::Perturbation(_), _) => {
+            report.help("let a wider bump of some joint reach them: a quadric is negative inside")
+        }
         (WeightRule::Explicit(_), _) => report.help("write formulas that are greater than 0 there"),
         _ => report
             .help("write a greater `radius` or `falloff` for the joints near it, or `weights = \"rigid\"`"),

@@ -50,7 +50,7 @@ pub(super) fn refused(built: &Built, shape: ShapeHandle, error: &RealizeError) -
             Diagnostic::error(Code::MorphTopology, format!("shape `{name}` cannot morph so: {error}"))
                 .at(place_of(built, shape, state), "this state")
                 .also(place(built, shape), "this shape")
-                .note("surfaces over parameters correspond where they have as many parts; polygons where they are the same; all else only where the triangles are")
+                .note("surfaces over parameters correspond where they have as many parts; polygons where they are the same; heights, whole ellipsoids and perturbed patches along their rays; all else only where the triangles are")
                 .help("change no number of parts, corners or copies, or write the same `segments` or `levels` for both")
         }
         RealizeError::State { state, error } => {

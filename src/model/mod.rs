@@ -25,8 +25,8 @@ pub use material::{
     AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, Texture, Wrap,
 };
 pub use motion::{
-    Clip, ClipTrack, Morph, NamedSkeleton, Owner, PropertyTrack, ReachTask, Skin, Socket, SocketHandle,
-    Space, State, Target, WeightRule,
+    Clip, ClipTrack, Driver, Morph, NamedSkeleton, Owner, PropertyTrack, ReachTask, Skin, Socket,
+    SocketHandle, Space, State, Target, WeightRule,
 };
 pub use shape::{
     Density, LightmapOptions, Occlusion, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode,

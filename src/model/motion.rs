@@ -3,8 +3,9 @@
 use glam::{DQuat, DVec3, DVec4};
 
 use super::{Frame, MaterialHandle, ShapeHandle};
+use crate::geometry::field::Bump;
 use crate::geometry::formula::Formula;
-use crate::motion::{Course, Envelope, Limits, Path, Property, Range, Skeleton, Transform};
+use crate::motion::{Course, Envelope, Limits, Path, Property, Ramp, Range, Skeleton, Transform};
 
 /// A skeleton of the document.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,6 +70,8 @@ pub enum WeightRule {
     Heat,
     /// For each of the skin's joints a formula of x, y and z in the document's unit and axes.
     Explicit(Vec<Formula>),
+    /// By bumps in the document's unit and axes, each with the place of its joint among the skin's.
+    Perturbation(Vec<(usize, Bump)>),
     /// For each point of the shape's polygons the joints that carry it, by their places among the skin's, and their weights.
     Given(Vec<Vec<(usize, f64)>>),
 }
@@ -82,8 +85,21 @@ pub struct Morph {
     pub shape: ShapeHandle,
     /// Its weight where no clip moves it.
     pub weight: f64,
+    /// What gives its weight in every clip that turns a joint.
+    pub driver: Option<Driver>,
     /// What the shape is at weight 1.
     pub state: State,
+}
+
+/// The joint whose angle gives a weight.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Driver {
+    /// Index in [`Model::skeletons`](super::Model::skeletons).
+    pub skeleton: usize,
+    /// Index of the joint.
+    pub joint: usize,
+    /// Which angle gives which weight.
+    pub ramp: Ramp,
 }
 
 /// What a shape is at weight 1.

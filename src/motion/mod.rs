@@ -34,5 +34,5 @@ pub use rig::Rig;
 pub use rotation::{EulerOrder, about, from_angles, normalized_lerp, slerp, to_angles};
 pub use skeleton::{Bone, Joint, MOST_JOINTS, Skeleton, SkeletonFault};
 pub use skin::{Envelope, Influence, Influences, Weights, envelope_weights, rigid_weights, weights_of};
-pub use track::{Course, Path, Track};
+pub use track::{Course, Path, Ramp, Track};
 pub use transform::Transform;

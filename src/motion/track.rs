@@ -3,7 +3,8 @@
 use glam::{DMat3, DQuat, DVec3, DVec4};
 
 use super::law::{Interpolation, Keys, Law};
-use super::rotation::{EulerOrder, about, nearer, slerp};
+use super::limit::{Axis, Limits};
+use super::rotation::{EulerOrder, about, nearer, slerp, to_angles};
 use crate::geometry::curve::{AnyCurve, Curve as _, Side};
 use crate::geometry::surface::{Carry, FrameField};
 
@@ -71,6 +72,35 @@ pub enum Course {
     Growth(Law),
     /// A weight, in place of the one at rest.
     Weight(Law),
+    /// A weight by the angle of a joint.
+    Driven {
+        /// The rotation of the joint.
+        of: Box<Self>,
+        /// Limits into which it is brought.
+        limits: Option<Limits>,
+        /// Which angle gives which weight.
+        ramp: Ramp,
+    },
+}
+
+/// A weight by an angle: 0 up to one, 1 from another on, evenly between.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ramp {
+    /// Which angle of the rotation, as limits take it apart.
+    pub axis: Axis,
+    /// Degrees at which the weight is 0.
+    pub from: f64,
+    /// Degrees at which it is 1.
+    pub to: f64,
+}
+
+impl Ramp {
+    /// The weight at a rotation of a joint.
+    #[must_use]
+    pub fn weight(&self, rotation: DQuat) -> f64 {
+        let angle = to_angles(rotation)[self.axis as usize];
+        ((angle - self.from) / (self.to - self.from)).clamp(0.0, 1.0)
+    }
 }
 
 /// A course and what it moves it on.
@@ -106,7 +136,7 @@ impl Course {
                 Path::Rotation
             }
             Self::Size(_) | Self::Growth(_) => Path::Scale,
-            Self::Weight(_) => Path::Weight,
+            Self::Weight(_) | Self::Driven { .. } => Path::Weight,
         }
     }
 
@@ -118,7 +148,7 @@ impl Course {
             | Self::Facing { law, .. }
             | Self::Turn { law, .. }
             | Self::Euler { law, .. } => Some(law),
-            Self::Rotations(_) => None,
+            Self::Rotations(_) | Self::Driven { .. } => None,
         }
     }
 
@@ -127,6 +157,7 @@ impl Course {
     pub fn stops(&self) -> Vec<f64> {
         match self {
             Self::Rotations(keys) => keys.times.clone(),
+            Self::Driven { of, .. } => of.stops(),
             _ => self.law().map(Law::stops).unwrap_or_default(),
         }
     }
@@ -147,6 +178,7 @@ impl Course {
     pub fn stepped(&self) -> bool {
         match self {
             Self::Rotations(keys) => keys.interpolation == Interpolation::Step,
+            Self::Driven { of, .. } => of.stepped(),
             _ => self.law().is_some_and(Law::stepped),
         }
     }
@@ -174,6 +206,11 @@ impl<'a> Track<'a> {
             Course::Turn { axis, law } => DVec4::from(about(*axis, law.at(time).x)),
             Course::Euler { order, law } => DVec4::from(order.rotation(law.at(time).truncate())),
             Course::Rotations(keys) => rotated(keys, time),
+            Course::Driven { of, limits, ramp } => {
+                let turned = DQuat::from_vec4(Track::new(of).at(time)).normalize();
+                let turned = limits.as_ref().map_or(turned, |limits| limits.clamp(turned));
+                DVec4::X * ramp.weight(turned)
+            }
             Course::Along { path, law } => {
                 path.evaluate(self.parameter(path, law.at(time).x), Side::After).point.extend(0.0)
             }

@@ -197,6 +197,14 @@ fn influences(model: &Model, index: usize, mesh: &Mesh) -> Result<Vec<Influences
                 own.next().into_iter().flatten().for_each(|(joint, share)| weights[*joint] = *share);
             })
         }
+        WeightRule::Perturbation(bumps) => {
+            let back = model.frame.map().inverse();
+            weights_of(&mesh.points, joints.len(), |point, weights| {
+                for (joint, bump) in bumps {
+                    weights[*joint] += bump.perturbation(back.transform_point3(point)).abs();
+                }
+            })
+        }
         WeightRule::Explicit(formulas) => {
             let back = model.frame.map().inverse();
             weights_of(&mesh.points, formulas.len(), |point, weights| {

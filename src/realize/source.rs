@@ -333,6 +333,11 @@ impl Source {
         &self.map
     }
 
+    /// The map back from there.
+    pub(super) fn back(&self) -> &DAffine3 {
+        &self.back
+    }
+
     fn is_known(&self) -> bool {
         match &self.kind {
             Kind::Derived => false,

@@ -37,6 +37,15 @@ pub struct Bump {
     pub factor: f64,
 }
 
+impl Bump {
+    /// What it adds at a point: the factor times the square of its depth, nothing outside.
+    #[must_use]
+    pub fn perturbation(&self, point: DVec3) -> f64 {
+        let (depth, _) = self.field.value_gradient(point);
+        if depth < 0.0 { self.factor * depth * depth } else { 0.0 }
+    }
+}
+
 impl Perturbed {
     /// The field in any kind of number.
     pub(super) fn evaluate<S: Space>(&self, place: [S; 3]) -> S {

@@ -125,7 +125,7 @@ pub use map::{
 };
 pub use material::{Alpha, Color, Filter, Material, Texture, Wrap};
 pub use mesh::Mesh;
-pub use morph::{Morph, MorphName, Morphs, ParameterValue};
+pub use morph::{DriverAxis, Morph, MorphDriver, MorphName, Morphs, ParameterValue};
 pub use node::{Node, SceneImport};
 pub use nurbs_surface::{BSplineSurface, NurbsSurface};
 pub use operation::{Chamfer, Fillet, Offset, OffsetCorner, ProfileSet};
@@ -154,7 +154,7 @@ pub use ruled::{End, Ruled, Translational};
 pub use scaling::{Blend, Factor, ScaleStation, Scaling};
 pub use shape::{Shape, ShapeDefinition, ShapeOptions, Smoothing, Uv};
 pub use skeleton::{AxisRanges, Chain, Joint as SkeletonJoint, MirrorAxis, Skeleton, SkeletonImport, Socket};
-pub use skin::{Skin, SkinWeight, WeightRule};
+pub use skin::{Skin, SkinBump, SkinWeight, WeightRule};
 pub use solid::{Cut, Hull, Keep, MinkowskiRound, Shell, SolidFormula, SolidSet, WallSide};
 pub use solid_expression::SolidExpression;
 pub use spanned::Sp;

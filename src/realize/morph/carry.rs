@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::super::shape::Made;
 use super::super::source::Sources;
+use super::cast::Casts;
 use super::chart::{Charts, deviation};
 use super::{Member, sampled};
 use crate::geometry::curve::Side;
@@ -94,6 +95,8 @@ pub(super) fn carry(
     }
     let flat = plan.model.shape(plan.shape).options.smoothing == Smoothing::Flat;
     let charts = if own { None } else { Some(Charts::between(from, to)?) };
+    let casts = Casts::between((plan.model, plan.shape), (member.model, member.shape), (from, to));
+    let casts = casts.filter(|_| !own);
     if let Some(charts) = &charts {
         for source in 0..charts.len() {
             let of = |mesh: &Mesh, triangle: &[VertexIndex; 3]| {
@@ -109,7 +112,9 @@ pub(super) fn carry(
             };
             let own_triangles = |triangle: &[VertexIndex; 3]| of(mesh, triangle).1;
             let other_triangles = |triangle: &[VertexIndex; 3]| of(other, triangle).1;
-            if pure(mesh)
+            // What rays tell fits together; triangles that only look alike need not.
+            if casts.is_none()
+                && pure(mesh)
                 && pure(other)
                 && let Some(found) = matched_some((mesh, &own_triangles), (other, &other_triangles))
             {
@@ -144,6 +149,27 @@ pub(super) fn carry(
             }
         }
     }
+    if let (Some(casts), Some(charts)) = (&casts, &charts) {
+        // Walls begin where the surfaces are that they end.
+        for curved in [true, false] {
+            for (index, vertex) in mesh.vertices.iter().enumerate() {
+                let source = vertex.anchor.source;
+                let done = matches!(normals[index], Normal::Known(_)) || charts.get(source).is_some();
+                if done || casts.is_curved(source) != curved {
+                    continue;
+                }
+                let place = &mut points[vertex.point.subscript()];
+                let (after, seen) = casts.cast(source, mesh.points[vertex.point.subscript()])?;
+                place.get_or_insert(after);
+                if let Some([before, after]) = seen {
+                    let along = before.dot(vertex.normal);
+                    if along.abs() > 0.98 && !flat {
+                        normals[index] = Normal::Known(after * along.signum());
+                    }
+                }
+            }
+        }
+    }
     let used = used_points(mesh);
     let place = |(index, point): (usize, &Option<DVec3>)| {
         let place = point.or_else(|| (!used[index]).then_some(mesh.points[index]))?;
@@ -156,7 +182,7 @@ pub(super) fn carry(
         carried.deviation = member.made.deviation;
     }
     if let Some(charts) = &charts {
-        let found = deviation(mesh, &carried, charts, to);
+        let found = deviation(mesh, &carried, charts, (to, casts.is_some()));
         carried.deviation = carried.deviation.union(sampled(found, &mesh.bounds()));
     }
     Some(carried)

@@ -116,24 +116,29 @@ impl Chart<'_> {
     }
 }
 
-/// The greatest distance found from a carried mesh to the surfaces that it was put on.
-pub(super) fn deviation(mesh: &Mesh, carried: &Carried, charts: &Charts<'_>, to: &Sources) -> f64 {
-    let of = |triangle: &[VertexIndex; 3]| of_triangle(mesh, carried, triangle, charts, to);
+/// The greatest distance found from a carried mesh to the surfaces that it was put on, `cast` to those without parameters too.
+pub(super) fn deviation(
+    mesh: &Mesh,
+    carried: &Carried,
+    charts: &Charts<'_>,
+    (to, cast): (&Sources, bool),
+) -> f64 {
+    let of = |triangle: &[VertexIndex; 3]| of_triangle((mesh, carried), triangle, charts, (to, cast));
     mesh.triangles.par_iter().with_min_len(256).map(of).reduce(|| 0.0, f64::max)
 }
 
 fn of_triangle(
-    mesh: &Mesh,
-    carried: &Carried,
+    (mesh, carried): (&Mesh, &Carried),
     triangle: &[VertexIndex; 3],
     charts: &Charts<'_>,
-    to: &Sources,
+    (to, cast): (&Sources, bool),
 ) -> f64 {
     let places = triangle.map(|vertex| carried.points[mesh.vertices[vertex.subscript()].point.subscript()]);
     let anchors = triangle.map(|vertex| carried.anchors[vertex.subscript()]);
     let at = |weights: &[f64; 3]| (0..3).map(|k| places[k] * weights[k]).sum::<DVec3>();
     let source = anchors[0].source;
-    if anchors.iter().any(|anchor| anchor.source != source) {
+    let chart = charts.get(source);
+    if anchors.iter().any(|anchor| anchor.source != source) || (cast && chart.is_none()) {
         // Between surfaces: the nearest of those around.
         let around = to.around(&anchors, &places);
         let nearest = |point: DVec3| {
@@ -143,7 +148,7 @@ fn of_triangle(
         let found = SAMPLES.iter().map(|weights| nearest(at(weights)));
         return found.filter(|away| away.is_finite()).fold(0.0, f64::max);
     }
-    let Some(chart) = charts.get(source) else { return 0.0 };
+    let Some(chart) = chart else { return 0.0 };
     let corners = chart.corners(anchors);
     let middle = [0, 1].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / 3.0);
     let distance = |weights: &[f64; 3]| {

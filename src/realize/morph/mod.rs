@@ -2,7 +2,7 @@
 //!
 //! The shape and each of its states are made by themselves first. Where their triangles correspond, as those of
 //! polygons, cages and fixed grids do, they are taken as they are. Otherwise one of the meshes is the plan for all: its
-//! points are put on the other surfaces at the same parameters, and how far its triangles then are from each surface is
+//! points are put on the other surfaces at the same parameters, or on the same rays, and how far its triangles then are from each surface is
 //! measured by dense samples. The plan is the mesh of the fewest triangles that is within the tolerance of every state;
 //! where none is, all are made finer and tried again.
 //!
@@ -10,6 +10,7 @@
 //! state. Not promised: that what lies between two states is near to any surface.
 
 mod carry;
+mod cast;
 mod chart;
 
 use carry::{Carried, carry, same_polygons};

@@ -212,6 +212,32 @@ impl PerturbedSkin {
         self.solid.is_some()
     }
 
+    /// Whether another skin has the same faces with the same rays, and each ray meets both once.
+    #[must_use]
+    pub fn has_faces_of(&self, other: &Self) -> bool {
+        let alike = |(one, other): (&PerturbedFace, &PerturbedFace)| {
+            one.corners == other.corners && one.rays == other.rays && one.radius == other.radius
+        };
+        self.solid.is_none()
+            && other.solid.is_none()
+            && self.points == other.points
+            && self.faces.len() == other.faces.len()
+            && self.faces.iter().zip(&other.faces).all(alike)
+    }
+
+    /// The point of another skin of the same faces on the ray of a point of this one, and the derivatives of their equations
+    /// at both; none where no face has that ray.
+    #[must_use]
+    pub fn carried(&self, other: &Self, point: DVec3) -> Option<(DVec3, [DVec3; 2])> {
+        // A point on a side lies beside its faces by rounding.
+        const BESIDE: f64 = 1e-9;
+        let (own, there) =
+            self.faces.iter().zip(&other.faces).find(|(face, _)| face.is_over(point, BESIDE))?;
+        let place = there.root(own.rays.drop(point).0)?;
+        let slope = |face: &PerturbedFace, at: DVec3| face.relief.value_gradient(at).1;
+        Some((place, [slope(own, point), slope(there, place)]))
+    }
+
     /// How many faces it has.
     #[must_use]
     pub fn face_count(&self) -> usize {
