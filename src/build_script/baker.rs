@@ -140,7 +140,9 @@ impl Baker<'_> {
             list.iter().flat_map(|(name, value)| [name.clone(), value.clone()]).collect::<Vec<_>>()
         };
         let (given, set) = (texts(&self.given), texts(&self.build.parameters));
-        let parts = ["build script", task.path.as_str(), task.name(), report].into_iter().chain(profiles);
+        let limits = format!("{:?}", task.limits);
+        let parts =
+            ["build script", task.path.as_str(), task.name(), report, &limits].into_iter().chain(profiles);
         let given = given.iter().map(String::as_str);
         let set = set.iter().map(String::as_str);
         cache.key(parts.chain(["--"]).chain(given).chain(["--"]).chain(set))

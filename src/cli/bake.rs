@@ -220,9 +220,10 @@ impl Worker<'_> {
         let texts = |list: &'a [(String, String)]| {
             list.iter().flat_map(|(name, value)| [name.as_str(), value.as_str()])
         };
+        let limits = format!("{:?}", task.limits);
         let sets = texts(&bake.documents.given).chain(["--"]).chain(texts(&bake.documents.set));
         cache.key(
-            [task.path.as_str(), task.name()]
+            [task.path.as_str(), task.name(), limits.as_str()]
                 .into_iter()
                 .chain(flags)
                 .chain(profiles)

@@ -28,8 +28,9 @@ pub(crate) fn named(
 ) -> Result<(Option<Project>, Vec<Task>), Outcome> {
     let project = project(documents, printer)?;
     let mut tasks = tasks(documents, project.as_ref(), printer)?;
-    if let (Some(project), None) = (&project, out) {
-        tasks = tasks.into_iter().map(|task| project.placed(task)).collect();
+    if let Some(project) = &project {
+        let placed = |task| if out.is_none() { project.placed(task) } else { task };
+        tasks = tasks.into_iter().map(|task| project.within(placed(task))).collect();
     }
     Ok((project, tasks))
 }
@@ -199,6 +200,10 @@ pub(crate) fn single(
         printer.failure(&message, None);
         Outcome::Files
     })?;
+    let task = match &project {
+        Some(project) => project.within(task),
+        None => task,
+    };
     Ok((project, task, documents))
 }
 

@@ -77,9 +77,14 @@ impl Project {
             found.extend(same_output(&tasks));
         }
         if found.is_empty() {
-            return Ok(tasks.into_iter().map(|(task, _)| task).collect());
+            return Ok(tasks.into_iter().map(|(task, _)| self.within(task)).collect());
         }
         Err(self.file.diagnostics(found))
+    }
+
+    /// A document with the limits of the project.
+    pub(crate) fn within(&self, task: Task) -> Task {
+        Task { limits: self.file.project.limits(), ..task }
     }
 
     /// The documents of a root, and where it really lies.

@@ -10,6 +10,7 @@ mod told;
 use std::path::{Path, PathBuf};
 
 use crate::language::source::{DiskFiles, Files};
+use crate::language::spec::Limits;
 use crate::language::{Document, PROJECT_FILE};
 pub(crate) use file::{Project, ProjectFault};
 pub(crate) use save::save;
@@ -28,6 +29,8 @@ pub(crate) struct Task {
     pub(crate) found: bool,
     /// Whether links may lead out of the root.
     pub(crate) linked: bool,
+    /// How much it may ask for.
+    pub(crate) limits: Limits,
 }
 
 impl Task {
@@ -36,7 +39,7 @@ impl Task {
         &self,
     ) -> std::io::Result<(DiskFiles, Result<Document, crate::language::diagnostic::Diagnostics>)> {
         let files = if self.linked { DiskFiles::linked(&self.root) } else { DiskFiles::new(&self.root) }?;
-        let document = Document::load(&self.path, &files as &dyn Files);
+        let document = Document::load_within(&self.path, &files as &dyn Files, self.limits);
         Ok((files, document))
     }
 
@@ -93,6 +96,7 @@ fn below(path: &Path, place: &Path, root: &Path, linked: bool) -> Result<Vec<Tas
                 output: slashes(&below.with_extension("")),
                 found: place.is_dir(),
                 linked,
+                limits: Limits::default(),
             }
         })
         .collect())

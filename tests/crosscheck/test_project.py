@@ -206,3 +206,30 @@ def test_commands_on_one_document_hear_the_project(kiln: Kiln) -> None:
     done = kiln.run("render", "specs/vase.toml", "--out", "vase.png")
     assert done.returncode == 1
     assert "kiln.toml:1" in done.stderr
+
+
+def test_a_project_raises_and_lowers_limits(kiln: Kiln) -> None:
+    sphere = "[limits]\ntriangles = LIMIT\n[shape.s]\nsegments = [64, 32]\n[shape.s.sphere]\nradius = 1\n"
+    prepare(kiln, 'roots = ["specs"]\n')
+    kiln.write(sphere.replace("LIMIT", "60_000_000"), "specs/vase")
+    done = kiln.run("bake")
+    assert done.returncode == 1
+    assert "a document can only lower `triangles`: 60000000 is above 50000000" in done.stderr
+    project = 'roots = ["specs"]\n[cache]\nfolder = "kept"\n[limits]\n'
+    kiln.write(project + "triangles = 80_000_000\n", "kiln")
+    for words in (("bake",), ("check",), ("render", "specs/vase.toml", "--out", "x.png", "--size", "32")):
+        done = kiln.run(*words)
+        assert done.returncode == 0, done.stderr
+    # What was baked before is not found under other limits.
+    kiln.write(project + "triangles = 1000\n", "kiln")
+    done = kiln.run("bake", "specs/vase.toml")
+    assert "60000000 is above 1000" in done.stderr
+    kiln.write(sphere.replace("LIMIT", "900"), "specs/vase")
+    done = kiln.run("bake", "specs/vase.toml")
+    assert done.returncode == 1
+    assert "900" in done.stderr
+    for wrong in ('triangles = "many"', "vertices = 0", "recursion = 100", 'memory = "8 pounds"'):
+        kiln.write(project + wrong + "\n", "kiln")
+        done = kiln.run("bake")
+        assert done.returncode == 1
+        assert "kiln.toml:5" in done.stderr, done.stderr

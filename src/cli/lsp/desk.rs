@@ -16,6 +16,7 @@ use crate::compile::{Compiled, Options, compile, outputs};
 use crate::geometry::curve::length;
 use crate::language::diagnostic::Diagnostics;
 use crate::language::source::{DiskFiles, FileError, FileRecord, Files, join};
+use crate::language::spec::Limits;
 use crate::language::{Document, PROJECT_FILE, ProjectFile};
 use crate::project::{Task, Told};
 
@@ -91,6 +92,7 @@ impl Desk {
             root,
             found: false,
             linked: false,
+            limits: Limits::default(),
         })
     }
 

@@ -57,7 +57,7 @@ impl<'a> Bake<'a> {
 
     fn document(&mut self, (watch, documents): (&Watch, &Documents), memory: &Arc<Memory>, seen: &Seen) {
         let task = self.task;
-        let document = match Document::load(&task.path, seen) {
+        let document = match Document::load_within(&task.path, seen, task.limits) {
             Ok(document) => document,
             Err(list) => {
                 self.sources = Some(Arc::clone(list.sources()));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::document::Document;
 use crate::language::source::{FileError, FileId, Files, SourceMap, Span, decode, join, readable};
-use crate::language::spec::{backtick, check_name, default_text};
+use crate::language::spec::{Limits, backtick, check_name, default_text};
 use crate::language::value::{Data, Entry, Table, Value, parse, quote};
 
 /// How deep includes may be nested.
@@ -31,7 +31,8 @@ pub(crate) fn load(main: &str, files: &dyn Files) -> (Document, Vec<Diagnostic>)
     .unwrap_or_default();
     let variants = base.entries.shift_remove("variant").map(|entry| loader.variants(entry.value));
     let sources = Arc::new(loader.sources);
-    (Document { sources, base, variants: variants.unwrap_or_default() }, loader.found)
+    let limits = Limits::default();
+    (Document { sources, base, variants: variants.unwrap_or_default(), limits }, loader.found)
 }
 
 /// Reads one file that includes no other: the texts, what stands in it where it can be read, and what was wrong.

@@ -16,7 +16,7 @@ use crate::language::document::evaluate::{Given, evaluate};
 use crate::language::document::overlay::overlay;
 use crate::language::source::Span;
 use crate::language::source::{Files, SourceMap};
-use crate::language::spec::{ParameterValue, Sp, Spec, read_spec};
+use crate::language::spec::{Limits, ParameterValue, Sp, Spec, read_spec};
 use crate::language::suggest::closest;
 use crate::language::value::{Table, quote};
 
@@ -28,6 +28,8 @@ pub struct Document {
     base: Table,
     /// What stands under `[variant]`.
     variants: Table,
+    /// How much it may ask for at most.
+    limits: Limits,
 }
 
 impl Document {
@@ -37,7 +39,16 @@ impl Document {
     /// Every file that cannot be read and every syntax error; beside them those errors of the rest that
     /// cannot follow from the first.
     pub fn load(main: &str, files: &dyn Files) -> Result<Self, Diagnostics> {
-        let (document, mut found) = load::load(main, files);
+        Self::load_within(main, files, Limits::default())
+    }
+
+    /// The same, where other limits than the usual ones hold.
+    ///
+    /// # Errors
+    /// As [`Document::load`].
+    pub fn load_within(main: &str, files: &dyn Files, limits: Limits) -> Result<Self, Diagnostics> {
+        let (mut document, mut found) = load::load(main, files);
+        document.limits = limits;
         if found.is_empty() {
             return Ok(document);
         }
@@ -143,7 +154,7 @@ impl Document {
             }
         }
         let mut found = evaluate(&mut table, &self.variants, given, &self.sources);
-        let (spec, more) = read_spec(&table, &self.sources);
+        let (spec, more) = read_spec(&table, &self.sources, self.limits);
         found.extend(more);
         (spec, found)
     }

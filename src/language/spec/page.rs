@@ -223,7 +223,7 @@ pub fn reference() -> String {
     page.push_str(
         "\n## A project\n\nWhat stands in `kiln.toml`; `kiln bake` without paths bakes all of it.\n",
     );
-    for name in ["project", "cache", "remote cache"] {
+    for name in ["project", "cache", "remote cache", "project limits"] {
         page.push_str(&table(name, &project["$defs"][name]));
     }
     page

@@ -7,7 +7,7 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::{FileError, join};
 use crate::language::spec::check::Check;
 use crate::language::spec::construct::table;
-use crate::language::spec::limit::Bytes;
+use crate::language::spec::limit::{Bytes, Limits};
 use crate::language::spec::morph::ParameterValue;
 use crate::language::spec::output::OutputProfile;
 use crate::language::spec::reader::{Read, Reader};
@@ -30,6 +30,41 @@ table! {
         parameters: IndexMap<String, Sp<ParameterText>> = IndexMap::new();
         /// What was baked before.
         cache: Option<Sp<ProjectCache>>;
+        /// How much documents may ask for.
+        limits: Option<Sp<ProjectLimits>>;
+    }
+}
+
+table! {
+    /// How much documents may ask for: more than is usual or less. A document itself can only lower it.
+    "project limits" pub(crate) ProjectLimits {
+        /// Most triangles of one asset; 50 million when it is not written.
+        triangles: Option<Sp<u64>> => Check::within(1.0, 1e9);
+        /// Most vertices of one asset; 50 million when it is not written.
+        vertices: Option<Sp<u64>> => Check::within(1.0, 1e9);
+        /// Most memory, in bytes or as in `"512 MiB"`; 8 GiB when it is not written.
+        memory: Option<Sp<Bytes>>;
+        /// Most pixels of one image; 268435456 when it is not written.
+        image_pixels: Option<Sp<u64>>;
+        /// Most steps of work; 10^10 when it is not written.
+        steps: Option<Sp<u64>>;
+    }
+}
+
+impl Project {
+    /// How much its documents may ask for. How deep they may be nested is not said here: that is what the stack holds.
+    pub(crate) fn limits(&self) -> Limits {
+        let usual = Limits::default();
+        let Some(said) = self.limits.as_ref().map(|limits| &limits.value) else { return usual };
+        let or = |said: Option<Sp<u64>>, usual: u64| said.map_or(usual, |said| said.value);
+        Limits {
+            triangles: or(said.triangles, usual.triangles),
+            vertices: or(said.vertices, usual.vertices),
+            memory: said.memory.map_or(usual.memory, |memory| memory.value.0),
+            image_pixels: or(said.image_pixels, usual.image_pixels),
+            recursion: usual.recursion,
+            steps: or(said.steps, usual.steps),
+        }
     }
 }
 

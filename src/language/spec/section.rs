@@ -65,7 +65,13 @@ pub(crate) fn default_text(section: &str) -> &'static str {
 }
 
 /// Reads an evaluated document; everything that is wrong with it, and the whole where nothing is.
-pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Vec<Diagnostic>) {
+///
+/// `outer` are the limits that it can only lower.
+pub(crate) fn read_spec(
+    table: &Table,
+    sources: &SourceMap,
+    outer: Limits,
+) -> (Option<Spec>, Vec<Diagnostic>) {
     let mut reader = Reader::new(sources);
     unknown_sections(table, &mut reader);
     let unit = word(table, "unit", Unit::Metre, &mut reader);
@@ -78,8 +84,7 @@ pub(crate) fn read_spec(table: &Table, sources: &SourceMap) -> (Option<Spec>, Ve
     let lod = table.get("lod").map(|value| reader.within("lod", |reader| Sp::<Lod>::read(value, reader)));
     let limits =
         table.get("limits").map(|value| reader.within("limits", |reader| LimitFields::read(value, reader)));
-    let limits =
-        limits.flatten().map_or(Limits::default(), |fields| fields.under(Limits::default(), &mut reader));
+    let limits = limits.flatten().map_or(outer, |fields| fields.under(outer, &mut reader));
     let curves = family(Family::Curve, Curve::NAMES, table, &mut reader);
     let maps = family(Family::Map, Map::NAMES, table, &mut reader);
     let fields = family(Family::Field, Field::NAMES, table, &mut reader);
