@@ -1,0 +1,5 @@
+//! Bakes the folder `assets`.
+
+fn main() {
+    kiln::Build::new("assets").run();
+}
