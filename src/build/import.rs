@@ -94,8 +94,7 @@ impl Builder<'_> {
         }
         let found = self.read_keyframes(import)?;
         let frame = self.frame_of(import, &found)?;
-        let mesh = found.at(frame);
-        Some(Imported { mesh, materials: found.materials, groups: found.groups, notes: Vec::new() })
+        Some(found.frame(frame))
     }
 
     fn read_mesh(&mut self, import: &Import) -> Option<Imported> {
@@ -110,21 +109,9 @@ impl Builder<'_> {
             most: self.model.limits.triangles,
         };
         let mut open = beside(self.files, &file.value);
-        let read = match file.value.extension().as_str() {
-            "stl" => import::stl::read(&bytes, &options),
-            "obj" => import::obj::read(&bytes, &options, &mut open),
-            "ply" => import::ply::read(&bytes, &options),
-            "3ds" => import::studio::read(&bytes, &options),
-            "dxf" => import::dxf::read(&bytes, &options),
-            "md5mesh" => import::md5::mesh::read(&bytes, options.group.as_deref()).map(|found| {
-                let mut imported = found.imported;
-                if let Some(weld) = options.weld {
-                    imported.mesh.weld(weld);
-                }
-                imported
-            }),
-            "glb" | "gltf" => import::gltf::read(&bytes, &options, &mut open),
-            other => return self.unsupported(file, other, &bytes),
+        let ending = file.value.extension();
+        let Some(read) = import::read(&ending, &bytes, &options, &mut open) else {
+            return self.unsupported(file, &ending, &bytes);
         };
         match read {
             Ok(imported) => Some(imported),
@@ -262,16 +249,9 @@ pub(super) fn beside<'f>(
     }
 }
 
-/// OBJ, PLY and BVH files have y up by custom, the others z.
+/// The axis that points up in files of its ending by custom.
 pub(super) fn default_up(file: &Sp<FilePath>) -> Up {
-    if matches!(
-        file.value.extension().as_str(),
-        "stl" | "3ds" | "dxf" | "md2" | "md3" | "md5mesh" | "md5anim"
-    ) {
-        Up::Z
-    } else {
-        Up::Y
-    }
+    if import::z_is_up(&file.value.extension()) { Up::Z } else { Up::Y }
 }
 
 /// Whether a file of its name has frames.

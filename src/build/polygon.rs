@@ -1,6 +1,7 @@
 //! Faces that are written out.
 
 use glam::{DVec2, DVec3};
+use indexmap::IndexSet;
 
 use super::Builder;
 use crate::geometry::mesh;
@@ -9,7 +10,7 @@ use crate::geometry::planar::{Regions, regions};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec;
-use crate::model::Recipe;
+use crate::model::{MaterialHandle, Recipe};
 
 impl Builder<'_> {
     /// A mesh of points and faces.
@@ -19,11 +20,18 @@ impl Builder<'_> {
             has_smoothing: mesh.smoothing_groups.is_some(),
             ..PolygonMesh::default()
         };
+        let mut names: IndexSet<&str> = IndexSet::new();
         for (index, face) in mesh.faces.iter().enumerate() {
+            let material = mesh
+                .face_materials
+                .as_ref()
+                .map(|materials| mesh::index(names.insert_full(&materials[index]).0));
             let smoothing = mesh.smoothing_groups.as_ref().map_or(0, |groups| groups[index]);
             let loops: Vec<&[u32]> = face.loops.iter().map(Vec::as_slice).collect();
-            polygons.push_face(&loops, None, smoothing);
+            polygons.push_face(&loops, material, smoothing);
         }
+        polygons.materials = names.iter().map(|&name| name.to_owned()).collect();
+        let materials = names.iter().map(|name| self.material(name)).collect();
         if let Some(uvs) = &mesh.uvs {
             polygons.uvs = uvs.value.iter().map(|uv| DVec2::new(uv.x, uv.y)).collect();
             let faces = mesh.face_uvs.as_ref().map_or(&mesh.faces, |faces| &faces.value);
@@ -34,7 +42,7 @@ impl Builder<'_> {
             polygons.corner_colors = polygons.corners.iter().map(|point| point.0).collect();
         }
         self.face_places = mesh.faces.iter().map(|face| face.span).collect();
-        self.polygons(polygons, span)
+        self.polygons(polygons, materials, span)
     }
 
     /// Flat polygons of loops that are sorted by the way they turn.
@@ -71,15 +79,20 @@ impl Builder<'_> {
         polygons.uvs = across_the_box(&polygons.points);
         polygons.corner_uvs = polygons.corners.iter().map(|corner| corner.0).collect();
         self.face_places = faces.iter().map(|face| polygon.loops[face[0]].span).collect();
-        self.polygons(polygons, span)
+        self.polygons(polygons, Vec::new(), span)
     }
 
-    fn polygons(&mut self, mesh: PolygonMesh, span: Span) -> Option<Recipe> {
+    fn polygons(
+        &mut self,
+        mesh: PolygonMesh,
+        materials: Vec<Option<MaterialHandle>>,
+        span: Span,
+    ) -> Option<Recipe> {
         if let Err(error) = mesh.validate() {
             self.report(Diagnostic::error(Code::BadMesh, error.to_string()).at(span, "this mesh"));
             return None;
         }
-        Some(Recipe::Polygons { mesh, materials: Vec::new() })
+        Some(Recipe::Polygons { mesh, materials })
     }
 }
 

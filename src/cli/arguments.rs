@@ -5,10 +5,12 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::values::{
-    assignment, background, bytes, heat, length, pixels, profile, seconds, shard, timeout, view,
+    assignment, background, bytes, distance, heat, length, pixels, profile, seconds, shard, timeout, view,
+    words,
 };
 use crate::gltf::Profile;
 use crate::language::Document;
+use crate::language::spec::{SubdivisionScheme, Unit, Up};
 use crate::preview::View;
 use crate::preview::heat::Heat;
 
@@ -104,6 +106,8 @@ pub(crate) enum Command {
     Diff(Diff),
     /// Make a glTF file of whatever maker small and quick to draw; names, extras and unknown extensions live on
     Optimize(Optimize),
+    /// Write the mesh of another program's file as a document: points and faces as text, its polygons kept
+    Convert(Convert),
     /// Print what is in a .glb file
     Inspect(Inspect),
     /// Look after the folder of what was baked before
@@ -362,6 +366,9 @@ pub(crate) struct Render {
     /// Draw parallel lines as parallel lines
     #[arg(long)]
     pub(crate) orthographic: bool,
+    /// Look through the camera of this node
+    #[arg(long, value_name = "NODE", conflicts_with_all = ["view", "orthographic", "turntable"])]
+    pub(crate) camera: Option<String>,
     /// Cast no shadows
     #[arg(long)]
     pub(crate) no_shadows: bool,
@@ -509,6 +516,36 @@ pub(crate) struct Optimize {
     /// Write sizes, counts and measured errors as JSON too
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Convert {
+    /// The file: glTF, OBJ, STL, PLY, 3DS, DXF, MD2, MD3 or MD5
+    pub(crate) file: PathBuf,
+    /// The document that is written; it ends in .toml
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// The name of the shape [default: that of the document]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) name: Option<String>,
+    /// Only the faces of this group, object or solid
+    #[arg(long, value_name = "NAME")]
+    pub(crate) group: Option<String>,
+    /// Join points that are within this distance, in the units of the file; 0 joins equal points
+    #[arg(long, value_name = "LENGTH", value_parser = distance)]
+    pub(crate) weld: Option<f64>,
+    /// The unit of the file
+    #[arg(long, value_name = "UNIT", default_value = "m", value_parser = words(&Unit::ALL, Unit::text))]
+    pub(crate) unit: Unit,
+    /// The axis of the file that points up [default: y for glTF, OBJ and PLY, z for the others]
+    #[arg(long, value_name = "AXIS", value_parser = words(&Up::ALL, Up::text))]
+    pub(crate) up: Option<Up>,
+    /// Make the mesh the cage of a subdivision surface by this scheme
+    #[arg(long, value_name = "SCHEME", value_parser = words(&SubdivisionScheme::ALL, SubdivisionScheme::text))]
+    pub(crate) subdivide: Option<SubdivisionScheme>,
+    /// Write over a document that is there
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 #[derive(Debug, Args)]

@@ -8,6 +8,7 @@ mod baked;
 mod budget;
 mod cache;
 mod check;
+mod convert;
 mod dependencies;
 mod describe;
 mod diff;
@@ -15,6 +16,7 @@ mod format;
 mod gallery;
 mod graph;
 mod html;
+mod input;
 mod inspect;
 mod lsp;
 mod optimize;
@@ -94,6 +96,7 @@ pub fn run() -> ExitCode {
         Command::Diff(diff) => diff::run(&diff, &printer),
         Command::Gallery(mut gallery) => gallery::run(&mut gallery, &printer),
         Command::Lsp => lsp::run(&printer),
+        Command::Convert(convert) => convert::run(&convert, &printer),
         Command::Optimize(optimize) => optimize::run(&optimize, &printer),
         Command::Inspect(inspect) => inspect::run(&inspect, &printer),
         Command::Cache(command) => cache::run(&command, &printer),

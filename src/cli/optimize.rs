@@ -1,17 +1,15 @@
 //! `kiln optimize`: a glTF file of whatever maker, small and quick to draw.
 
-use std::path::{Component, Path};
+use std::path::Path;
 
 use serde_json::json;
 
 use super::Outcome;
 use super::arguments::Optimize;
+use super::input::{beside, read};
 use super::output::Printer;
 use crate::project::{reason, save};
 use crate::repack::{Change, Codec, Options, Report, repacked};
-
-/// Bytes of a file that is read at most: what a `.glb` file can hold.
-const MOST: u64 = u32::MAX as u64;
 
 pub(crate) fn run(optimize: &Optimize, printer: &Printer) -> Outcome {
     if optimize.out.extension().and_then(|ending| ending.to_str()) != Some("glb") {
@@ -57,22 +55,6 @@ pub(crate) fn run(optimize: &Optimize, printer: &Printer) -> Outcome {
     let told = json!({ "file": optimize.out.display().to_string(), "optimized": object });
     printer.result(&described(optimize, &made.report), &told);
     Outcome::Good
-}
-
-/// A file, if it is not too large.
-fn read(path: &Path) -> Result<Vec<u8>, String> {
-    let length = std::fs::metadata(path).map_err(|error| reason(&error))?.len();
-    if length > MOST {
-        return Err(format!("it has {length} bytes, more than {MOST}"));
-    }
-    std::fs::read(path).map_err(|error| reason(&error))
-}
-
-/// A file in the folder or below it; others are not opened, whatever a document asks for.
-fn beside(folder: &Path, path: &str) -> Option<Vec<u8>> {
-    let path = Path::new(path);
-    let inside = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-    inside.then(|| read(&folder.join(path)).ok()).flatten()
 }
 
 fn described(optimize: &Optimize, report: &Report) -> String {

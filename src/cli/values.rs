@@ -1,5 +1,7 @@
 //! Values of arguments, from how they are written to what they mean.
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+
 use super::arguments::Shard;
 use crate::gltf::Profile;
 use crate::language::spec::parse_bytes;
@@ -73,6 +75,24 @@ pub(super) fn pixels(text: &str) -> Result<(u32, u32), String> {
         }
     };
     Ok((number(width)?, number(height)?))
+}
+
+/// A choice of the language by its word.
+pub(super) fn words<T: Copy + Send + Sync + 'static>(
+    all: &'static [T],
+    text: fn(T) -> &'static str,
+) -> impl TypedValueParser<Value = T> {
+    let known = PossibleValuesParser::new(all.iter().map(|&choice| text(choice)));
+    known.try_map(move |word| all.iter().copied().find(|&choice| text(choice) == word).ok_or("unknown word"))
+}
+
+pub(super) fn distance(text: &str) -> Result<f64, String> {
+    let distance: f64 = text.trim().parse().map_err(|_| format!("`{text}` is not a distance"))?;
+    if distance.is_finite() && distance >= 0.0 {
+        Ok(distance)
+    } else {
+        Err("write a distance of 0 or more".to_owned())
+    }
 }
 
 pub(super) fn length(text: &str) -> Result<f64, String> {

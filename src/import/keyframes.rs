@@ -5,7 +5,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::MaterialLook;
+use super::{Imported, MaterialLook};
 use crate::geometry::mesh::PolygonMesh;
 
 /// A file.
@@ -90,6 +90,13 @@ impl Keyframes {
     pub fn at(&self, frame: usize) -> PolygonMesh {
         let Frame { points, normals, .. } = &self.frames[frame];
         PolygonMesh { points: points.clone(), normals: normals.clone(), ..self.mesh.clone() }
+    }
+
+    /// The model in the state of a frame.
+    #[must_use]
+    pub fn frame(self, frame: usize) -> Imported {
+        let mesh = self.at(frame);
+        Imported { mesh, materials: self.materials, groups: self.groups, notes: Vec::new() }
     }
 
     /// Frames that follow each other and have one name but for a number at its end. Of numbers of three digits the first

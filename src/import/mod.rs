@@ -80,3 +80,38 @@ pub struct MaterialLook {
     /// `map_Kd`: path of the color texture as written.
     pub texture: Option<String>,
 }
+
+/// Whether files of this ending, in lower case, have z up by custom; those of the others have y.
+#[must_use]
+pub fn z_is_up(ending: &str) -> bool {
+    matches!(ending, "stl" | "3ds" | "dxf" | "md2" | "md3" | "md5mesh" | "md5anim")
+}
+
+/// The mesh of a file by the ending of its name, in lower case; of one with frames, its first. `None` where meshes of
+/// that ending are not read. `open` gives files by their paths from this one.
+pub fn read(
+    ending: &str,
+    bytes: &[u8],
+    options: &ImportOptions,
+    open: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+) -> Option<Result<Imported, ImportError>> {
+    let group = options.group.as_deref();
+    Some(match ending {
+        "stl" => stl::read(bytes, options),
+        "obj" => obj::read(bytes, options, open),
+        "ply" => ply::read(bytes, options),
+        "3ds" => studio::read(bytes, options),
+        "dxf" => dxf::read(bytes, options),
+        "md2" => md2::read(bytes).map(|found| found.frame(0)).map_err(ImportError::from),
+        "md3" => md3::read(bytes, group).map(|found| found.frame(0)),
+        "md5mesh" => md5::mesh::read(bytes, group).map(|found| {
+            let mut imported = found.imported;
+            if let Some(weld) = options.weld {
+                imported.mesh.weld(weld);
+            }
+            imported
+        }),
+        "glb" | "gltf" => gltf::read(bytes, options, open),
+        _ => return None,
+    })
+}

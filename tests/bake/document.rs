@@ -143,6 +143,33 @@ fn parts_keep_their_materials_and_each_material_is_one_primitive() {
 }
 
 #[test]
+fn faces_have_materials_of_their_own() {
+    // A closed tetrahedron, one face red, the others of the material named last; as it is and as a cage.
+    let mesh = "points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]\n\
+                faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]\n\
+                face-materials = [\"blue\", \"red\", \"blue\", \"blue\"]";
+    let text = format!(
+        "[material.red]\n[material.blue]\n[shape.a.mesh]\n{mesh}\n\
+         [shape.b.subdivide]\ncage = \"a\"\nlevels = 2\n[node.a]\nshape = \"a\"\n[node.b]\nshape = \"b\""
+    );
+    let baked = bake(&text);
+    // Catmull-Clark cuts a triangle into 3 quads, each of these into 4, each of two triangles.
+    for (mesh, share) in baked.glb.list("meshes").iter().zip([3, 3 * 4 * 2 * 3]) {
+        let primitives = mesh["primitives"].as_array().expect("primitives");
+        let named = primitives.iter().map(|primitive| {
+            let at = |key: &str| usize::try_from(primitive[key].as_u64().expect("an index")).expect("small");
+            let count = baked.glb.list("accessors")[at("indices")]["count"].as_u64().expect("a count");
+            (baked.glb.list("materials")[at("material")]["name"].clone(), count)
+        });
+        let mut named: Vec<_> = named.map(|(name, count)| (name.to_string(), count)).collect();
+        named.sort();
+        assert_eq!(named, [("\"blue\"".to_owned(), 3 * share), ("\"red\"".to_owned(), share)]);
+    }
+    let closed = baked.report().shapes.values().all(|shape| shape.facts.closed);
+    assert!(closed, "the border of materials is no hole");
+}
+
+#[test]
 fn images_are_embedded_once_and_as_they_are() {
     let text = "[material.x]\ncolor-texture = \"label.png\"\nocclusion-texture = { file = \"label.png\", wrap = \"clamp\" }\n\
                 [material.y]\ncolor-texture = \"./label.png\"\nemissive-texture = { file = \"label.png\", filter = \"nearest\" }\n\

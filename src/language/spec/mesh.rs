@@ -9,6 +9,7 @@ use crate::language::spec::construct::table;
 use crate::language::spec::material::Color;
 use crate::language::spec::polygon::Face;
 use crate::language::spec::reader::Reader;
+use crate::language::spec::reference::MaterialName;
 use crate::language::spec::spanned::Sp;
 
 table! {
@@ -27,6 +28,8 @@ table! {
         colors: Option<Sp<Vec<Color>>>;
         /// For each face the number of its smoothing group: edges between faces of one group look smooth. 0 is flat.
         smoothing_groups: Option<Sp<Vec<u32>>>;
+        /// For each face the name of its material. Without it all have the material of the shape.
+        face_materials: Option<Sp<Vec<Sp<MaterialName>>>>;
     }
     checked check
 }
@@ -41,7 +44,11 @@ impl Mesh {
         let points = ("points", self.points.len());
         let colors = (self.colors.as_ref())
             .is_none_or(|colors| self.same_count("colors", colors.len(), colors.span, points, reader));
-        self.check_groups(reader) && uvs && colors && good
+        let faces = ("faces", self.faces.len());
+        let materials = self.face_materials.as_ref().is_none_or(|materials| {
+            self.same_count("face-materials", materials.len(), materials.span, faces, reader)
+        });
+        self.check_groups(reader) && materials && uvs && colors && good
     }
 
     fn check_face(&self, index: usize, face: &Sp<Face>, reader: &mut Reader<'_>) -> bool {
