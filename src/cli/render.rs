@@ -55,6 +55,11 @@ fn picture(render: &Render, printer: &Printer) -> Result<(), Fault> {
     if drawn && (render.turntable.is_some() || render.view.len() > 1) {
         return Err(usage("a line drawing has one view; write several drawings, or a .png"));
     }
+    if drawn && render.camera.is_some() {
+        return Err(usage(
+            "--camera makes pictures of pixels: write a .png or an .apng, or a drawing with --view",
+        ));
+    }
     if ending == "apng" && !moves {
         return Err(usage("an .apng moves: write --turntable N, or --clip NAME without --time"));
     }
@@ -85,7 +90,7 @@ fn picture(render: &Render, printer: &Printer) -> Result<(), Fault> {
         match render.turntable {
             Some(count) => turntable(render, &asset, &stage, count)?,
             None if drawn => lines(render, &stage, &ending).into_bytes(),
-            None => legended(render, &stage, still(render, &asset, &stage)).png().map_err(unwritten)?,
+            None => legended(render, &stage, still(render, &asset, &stage)?).png().map_err(unwritten)?,
         }
     };
     let folder = out.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
@@ -181,15 +186,36 @@ fn look(render: &Render) -> Look {
     }
 }
 
+/// The camera of the file that the picture is seen through, if one was asked for.
+fn through(render: &Render, stage: &Stage, look: &Look) -> Result<Option<Camera>, Fault> {
+    let Some(asked) = &render.camera else { return Ok(None) };
+    let Some(eye) = stage.eyes.iter().find(|eye| eye.name == *asked) else {
+        let known: Vec<&str> = stage.eyes.iter().map(|eye| eye.name.as_str()).collect();
+        let known = if known.is_empty() {
+            "the model has none".to_owned()
+        } else {
+            format!("it has {}", known.join(", "))
+        };
+        return Err((Some(format!("there is no camera at a node `{asked}`: {known}")), Outcome::Usage));
+    };
+    let camera = Camera::through(eye, look.size);
+    camera.map(Some).ok_or_else(|| {
+        (Some(format!("the camera `{asked}` sees nothing: its node has no size")), Outcome::Errors)
+    })
+}
+
 /// All views on one sheet.
-fn still(render: &Render, asset: &Asset, stage: &Stage) -> Picture {
+fn still(render: &Render, asset: &Asset, stage: &Stage) -> Result<Picture, Fault> {
     let look = look(render);
+    if let Some(camera) = through(render, stage, &look)? {
+        return Ok(draw_picture(asset, stage, &camera, &look));
+    }
     let of = |view: &View| draw_picture(asset, stage, &Camera::on(&[stage], *view, &look), &look);
     let mut pictures: Vec<Picture> = render.view.iter().map(of).collect();
-    match pictures.len() {
+    Ok(match pictures.len() {
         1 => pictures.remove(0),
         _ => Picture::sheet(&pictures, look.background),
-    }
+    })
 }
 
 /// The lines of the first view.
@@ -235,9 +261,12 @@ fn clip(render: &Render, asset: &Asset) -> Result<Vec<u8>, Fault> {
         (0..count).map(|k| stage(asset, render, k as f64 / RATE)).collect();
     let stages = stages?;
     let all: Vec<&Stage> = stages.iter().collect();
-    let camera = Camera::on(&all, first_view(render), &look);
-    let pictures: Vec<Picture> =
-        stages.iter().map(|stage| draw_picture(asset, stage, &camera, &look)).collect();
+    let outside = Camera::on(&all, first_view(render), &look);
+    let picture = |stage: &Stage| {
+        let camera = through(render, stage, &look)?.unwrap_or(outside);
+        Ok(draw_picture(asset, stage, &camera, &look))
+    };
+    let pictures: Vec<Picture> = stages.iter().map(picture).collect::<Result<_, Fault>>()?;
     Picture::animation(&pictures, 42).map_err(unwritten)
 }
 

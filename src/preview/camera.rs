@@ -2,7 +2,9 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use crate::geometry::number::{Bounds, cos_degrees, hypot, sin_cos_degrees, tan_degrees};
+use super::asset::Lens;
+use super::stage::Eye;
+use crate::geometry::number::{Bounds, cos_degrees, hypot, sin_cos, sin_cos_degrees, tan_degrees};
 
 /// How space becomes a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -48,6 +50,8 @@ pub struct Camera {
     scale: f64,
     /// The middle of the picture, in pixels.
     center: DVec2,
+    /// The nearest and the farthest that is seen; `None` where everything lies before the eye.
+    range: Option<(f64, f64)>,
 }
 
 /// Half of the angle that a perspective picture spans where it is narrower, in degrees.
@@ -55,6 +59,9 @@ const HALF_ANGLE: f64 = 15.0;
 
 /// Share of the picture that stays free around what is shown.
 const MARGIN: f64 = 0.06;
+
+/// How far beyond its borders a picture through a camera of a file keeps what it is made of, times its half size.
+const BEYOND: f64 = 1.25;
 
 /// Corners of the polygon that stands for a circle.
 const RIM: u32 = 64;
@@ -89,7 +96,7 @@ impl Camera {
                 let fits = (free / extent.max(DVec2::splat(f64::MIN_POSITIVE))).min_element();
                 let scale = if fits.is_finite() { fits } else { free.min_element() };
                 let eye = axes * ((low + high) / 2.0).extend(0.0);
-                Self { projection, axes, eye, scale, center }
+                Self { projection, axes, eye, scale, center, range: None }
             }
             Projection::Perspective => {
                 let scale = free.min_element() / 2.0 / tan_degrees(HALF_ANGLE);
@@ -114,7 +121,7 @@ impl Camera {
                 let room = (back - near).max(0.0);
                 // What is flat and stands on edge must not touch the eye.
                 let eye = eye + DVec3::Z * if room > 0.0 { 0.0 } else { 1.0 };
-                Self { projection, axes, eye: axes * eye, scale, center }
+                Self { projection, axes, eye: axes * eye, scale, center, range: None }
             }
         }
     }
@@ -135,6 +142,75 @@ impl Camera {
         };
         let points = (0..RIM).flat_map(move |k| [rim(k) - DVec3::Y * half.y, rim(k) + DVec3::Y * half.y]);
         Self::around(view, projection, points, size)
+    }
+
+    /// A camera of a file, as a picture of `size` pixels sees through it: its upright angle fills the height. `None` where its
+    /// node has no size, or its lens sees nothing.
+    #[must_use]
+    pub fn through(eye: &Eye, size: (u32, u32)) -> Option<Self> {
+        let back = eye.world.z_axis.truncate().try_normalize()?;
+        let up = eye.world.y_axis.truncate().reject_from_normalized(back).try_normalize()?;
+        let pixels = DVec2::new(size.0.into(), size.1.into());
+        let (projection, half, near, far) = match eye.lens {
+            Lens::Perspective { upright, near, far } => {
+                let (sine, cosine) = sin_cos(upright / 2.0);
+                (Projection::Perspective, sine / cosine, near, far.unwrap_or(f64::INFINITY))
+            }
+            Lens::Orthographic { half, near, far } => (Projection::Orthographic, half.abs(), near, far),
+        };
+        let perspective = projection == Projection::Perspective;
+        let sees = half > 0.0 && half.is_finite() && far > near && (near > 0.0 || !perspective);
+        sees.then(|| Self {
+            projection,
+            axes: DMat3::from_cols(up.cross(back), up, back),
+            eye: eye.world.w_axis.truncate(),
+            scale: pixels.y / 2.0 / half,
+            center: pixels / 2.0,
+            range: Some((near, far)),
+        })
+    }
+
+    /// What is seen of a polygon, as its corners; of a line, its ends. All of it for a camera that has everything before it.
+    /// Polygons that share an edge share what is left of it.
+    ///
+    /// Source: I. Sutherland, G. Hodgman, Reentrant Polygon Clipping, CACM 1974.
+    #[must_use]
+    pub(super) fn seen(&self, points: &[DVec3]) -> Vec<DVec3> {
+        let Some((near, far)) = self.range else { return points.to_vec() };
+        let mut own: Vec<DVec3> =
+            points.iter().map(|&point| self.axes.transpose() * (point - self.eye)).collect();
+        // A polygon is cut off a little beyond the borders, so that borders show no cuts.
+        let half = self.center / self.scale * BEYOND;
+        let side = |along: f64, half: f64, away: f64| match self.projection {
+            Projection::Perspective => half * away - along,
+            Projection::Orthographic => half - along,
+        };
+        let planes: [&dyn Fn(DVec3) -> f64; 6] = [
+            &|point| -point.z - near,
+            &|point| far - -point.z,
+            &|point| side(point.x, half.x, -point.z),
+            &|point| side(-point.x, half.x, -point.z),
+            &|point| side(point.y, half.y, -point.z),
+            &|point| side(-point.y, half.y, -point.z),
+        ];
+        for plane in planes {
+            let mut kept = Vec::with_capacity(own.len() + 1);
+            for (number, &point) in own.iter().enumerate() {
+                let next = own[(number + 1) % own.len()];
+                let (here, there) = (plane(point), plane(next));
+                if here >= 0.0 {
+                    kept.push(point);
+                }
+                if (here >= 0.0) != (there >= 0.0) {
+                    // From the end inside to that outside, whichever way the edge runs.
+                    let (a, b, inside, outside) =
+                        if here >= 0.0 { (point, next, here, there) } else { (next, point, there, here) };
+                    kept.push(a + (b - a) * (inside / (inside - outside)));
+                }
+            }
+            own = kept;
+        }
+        own.into_iter().map(|point| self.eye + self.axes * point).collect()
     }
 
     /// The place of a point; `None` behind the eye, or too near to it.
@@ -214,9 +290,12 @@ fn axes(view: View) -> DMat3 {
 
 #[cfg(test)]
 mod tests {
-    use glam::{DVec2, DVec3};
+    use glam::{DMat4, DVec2, DVec3};
 
     use super::{Camera, MARGIN, Projection, View};
+    use crate::geometry::number::{Bounds, sin_cos};
+    use crate::preview::asset::Lens;
+    use crate::preview::{Eye, Stage, Vertex, depths};
 
     fn corners() -> Vec<DVec3> {
         (0..8).map(|k| DVec3::new((k & 1) as f64, (k >> 1 & 1) as f64 * 3.0, (k >> 2) as f64 * 0.5)).collect()
@@ -271,5 +350,78 @@ mod tests {
         assert!(at(DVec3::X).x > at(DVec3::ZERO).x, "x goes to the right");
         assert!(at(DVec3::Y).y < at(DVec3::ZERO).y, "y goes up");
         assert!(at(DVec3::Z).z < at(DVec3::ZERO).z, "z comes nearer");
+    }
+
+    /// A file's camera at the origin of a scene turned about y by `turn` degrees.
+    fn eye(lens: Lens, turn: f64) -> Eye {
+        Eye { name: "eye".to_owned(), world: DMat4::from_rotation_y(turn.to_radians()), lens }
+    }
+
+    #[test]
+    fn the_lens_of_a_file_spans_the_height_of_the_picture() {
+        let lens = Lens::Perspective { upright: 1.2, near: 0.1, far: None };
+        let camera = Camera::through(&eye(lens, 90.0), (300, 200)).unwrap();
+        // It looks along -x; z runs to the left.
+        let (sine, cosine) = sin_cos(0.6);
+        let half = sine / cosine;
+        let at = |point: DVec3| camera.project(point).unwrap().truncate();
+        assert!(at(DVec3::new(-5.0, 5.0 * half, 0.0)).distance(DVec2::new(150.0, 0.0)) < 1e-9);
+        assert!(at(DVec3::new(-5.0, 0.0, 7.5 * half)).distance(DVec2::new(0.0, 100.0)) < 1e-9);
+        let lens = Lens::Orthographic { half: 2.0, near: 0.1, far: 10.0 };
+        let camera = Camera::through(&eye(lens, 0.0), (300, 200)).unwrap();
+        let at = |point: DVec3| camera.project(point).unwrap().truncate();
+        assert!(at(DVec3::new(3.0, -2.0, -5.0)).distance(DVec2::new(300.0, 200.0)) < 1e-9);
+        let flat = Eye { world: DMat4::from_scale(DVec3::new(1.0, 1.0, 0.0)), ..eye(lens, 0.0) };
+        assert!(Camera::through(&flat, (300, 200)).is_none());
+    }
+
+    #[test]
+    fn a_ground_that_reaches_behind_the_eye_is_seen_to_the_horizon() {
+        // Two triangles a kilometer wide, a meter below the eye.
+        let corner = |x: f64, z: f64| Vertex {
+            point: DVec3::new(x, -1.0, z),
+            normal: DVec3::Y,
+            tangent: [0.0; 4],
+            uvs: [[0.0; 2]; 2],
+            color: [1.0; 4],
+        };
+        let stage = Stage {
+            vertices: vec![
+                corner(-500.0, -500.0),
+                corner(500.0, -500.0),
+                corner(500.0, 500.0),
+                corner(-500.0, 500.0),
+            ],
+            triangles: vec![[0, 2, 1], [0, 3, 2]],
+            lines: Vec::new(),
+            pieces: Vec::new(),
+            bounds: Bounds::of_points([]),
+            heat: None,
+            eyes: Vec::new(),
+        };
+        let (upright, near, far) = (1.0, 0.5, 40.0);
+        for turn in [0.0, 33.0, 200.0] {
+            let lens = Lens::Perspective { upright, near, far: Some(far) };
+            let camera = Camera::through(&eye(lens, turn), (80, 60)).unwrap();
+            let depths = depths(&stage, &camera, (80, 60));
+            let (sine, cosine) = sin_cos(upright / 2.0);
+            let slope = sine / cosine / 30.0;
+            for row in 0..60_u8 {
+                let down = (f64::from(row) + 0.5 - 30.0) * slope;
+                let away = 1.0 / down;
+                for column in 0..80_usize {
+                    let found = f64::from(depths[usize::from(row) * 80 + column]);
+                    if down > 0.0 && away > near && away < far {
+                        // Places are rounded to 1/256 of a pixel.
+                        assert!(
+                            (-1.0 / found - away).abs() < away * 0.02,
+                            "{turn} {row} {column}: {found} {away}"
+                        );
+                    } else {
+                        assert!(found.is_infinite(), "{turn} {row} {column}: {found} {away}");
+                    }
+                }
+            }
+        }
     }
 }

@@ -81,6 +81,19 @@ pub enum HeatError {
 }
 
 impl Heat {
+    /// What is shown by the word for it: `deviation`, `curvature`, `uv-stretch`, `texel-density`, or `weights:JOINT`.
+    #[must_use]
+    pub fn named(text: &str) -> Option<Self> {
+        Some(match text.split_once(':') {
+            Some(("weights", joint)) if !joint.is_empty() => Self::Weights(joint.to_owned()),
+            None if text == "deviation" => Self::Deviation,
+            None if text == "curvature" => Self::Curvature,
+            None if text == "uv-stretch" => Self::UvStretch,
+            None if text == "texel-density" => Self::TexelDensity,
+            _ => return None,
+        })
+    }
+
     /// What is shown, and its unit, in words.
     #[must_use]
     pub fn title(&self) -> String {
@@ -171,7 +184,8 @@ impl HeatMap {
     }
 
     /// The color at a place of a triangle, linear; none where nothing was measured.
-    pub(super) fn color(&self, triangle: u32, shares: [f64; 3]) -> Option<Vec3> {
+    #[must_use]
+    pub fn color(&self, triangle: u32, shares: [f64; 3]) -> Option<Vec3> {
         let value = self.values.get(triangle as usize)?.at(shares)?;
         Some(ramp((value - self.low) / (self.high - self.low)))
     }

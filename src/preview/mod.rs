@@ -30,7 +30,7 @@ pub use camera::{Camera, Projection, View};
 pub use picture::{Picture, PictureError};
 use raster::{Face, MIDDLE, SIXTEEN, Seen, Tile, Veil, draw};
 use shader::Shader;
-pub use stage::{Moment, Piece, Stage, StageError, Vertex};
+pub use stage::{Eye, Moment, Piece, Stage, StageError, Vertex};
 
 use crate::geometry::number::count_of;
 
@@ -124,15 +124,18 @@ fn corner(tile: &Tile, number: usize) -> DVec2 {
 
 /// Triangles and lines in the picture; lines have the names after those of the triangles.
 fn faces(stage: &Stage, camera: &Camera) -> Vec<Face> {
-    let place = |vertex: u32| camera.project(stage.vertices[vertex as usize].point);
+    let point = |vertex: u32| stage.vertices[vertex as usize].point;
     let mut faces = Vec::with_capacity(stage.triangles.len() + 2 * stage.lines.len());
-    for (name, [a, b, c]) in stage.triangles.iter().enumerate() {
-        if let (Some(a), Some(b), Some(c)) = (place(*a), place(*b), place(*c)) {
-            faces.push(Face { corners: [a, b, c], name: count_of(name) });
+    for (name, corners) in stage.triangles.iter().enumerate() {
+        let seen = camera.seen(&corners.map(point));
+        let places: Vec<_> = seen.into_iter().filter_map(|point| camera.project(point)).collect();
+        for k in 1..places.len().saturating_sub(1) {
+            faces.push(Face { corners: [places[0], places[k], places[k + 1]], name: count_of(name) });
         }
     }
-    for (number, [a, b]) in stage.lines.iter().enumerate() {
-        if let (Some(a), Some(b)) = (place(*a), place(*b)) {
+    for (number, ends) in stage.lines.iter().enumerate() {
+        let seen = camera.seen(&ends.map(point));
+        if let [Some(a), Some(b)] = [0, 1].map(|k| camera.project(*seen.get(k)?)) {
             let along = (b - a).truncate().normalize_or(DVec2::X);
             let (side, along) = (along.perp().extend(0.0) * HALF_LINE, along.extend(0.0) * (HALF_LINE / 2.0));
             let [p, q, r, s] = [a - along + side, a - along - side, b + along - side, b + along + side];

@@ -6,7 +6,7 @@
 use glam::{DMat3, DMat4, DVec3};
 use thiserror::Error;
 
-use super::asset::{Asset, Material, Part, changed};
+use super::asset::{Asset, Lens, Material, Part, changed};
 use super::heat::HeatMap;
 use crate::geometry::number::Bounds;
 
@@ -27,6 +27,19 @@ pub struct Stage {
     pub bounds: Bounds,
     /// Numbers that are shown as colors, in place of the materials.
     pub heat: Option<HeatMap>,
+    /// The cameras of the file.
+    pub eyes: Vec<Eye>,
+}
+
+/// A camera of the file, where it stands.
+#[derive(Clone, Debug)]
+pub struct Eye {
+    /// The name of its node.
+    pub name: String,
+    /// From its axes to space.
+    pub world: DMat4,
+    /// How it sees.
+    pub lens: Lens,
 }
 
 /// A corner of triangles.
@@ -121,8 +134,13 @@ impl Stage {
             pieces: Vec::new(),
             bounds: Bounds::of_points([]),
             heat: None,
+            eyes: Vec::new(),
         };
         for node in order {
+            if let Some(lens) = nodes[node].lens {
+                let name = nodes[node].name.clone();
+                stage.eyes.push(Eye { name, world: worlds[node], lens });
+            }
             let Some(mesh) = nodes[node].mesh.and_then(|mesh| asset.meshes.get(mesh)) else { continue };
             let own = &nodes[node].weights;
             let weights = if own.is_empty() { &mesh.weights } else { own };

@@ -47,3 +47,29 @@ def test_silhouettes_are_those_of_blender(kiln: Kiln, tmp_path: Path, spec: str)
     assert abs(own.mean() - other.mean()) <= 0.005 * other.mean()
     # A picture that is nothing but background would agree with itself.
     assert 0.02 < own.mean() < 0.9
+
+
+def test_pictures_through_a_camera_of_the_document(kiln: Kiln) -> None:
+    """A ball seen through a lens of 40 degrees covers the disk of the cone that touches it."""
+    ball = "tolerance = 1e-4\n[shape.ball]\nat = [0.3, 0.2, 0]\n[shape.ball.sphere]\nradius = 1\n"
+    eye = "[node.ball]\nshape = 'ball'\n[node.eye]\nat = [0.3, 0.2, 5]\n[node.eye.camera]\nfield-of-view = 40\n"
+    # A wall that reaches from before the eye to behind it, to its right.
+    wall = "[shape.wall]\nat = [2.3, 0.2, 5]\n[shape.wall.box]\nsize = [0.1, 0.1, 12]\n[node.wall]\nshape = 'wall'\n"
+    pixels = []
+    for name, text in [("ball", ball + eye), ("wall", ball + wall + eye)]:
+        kiln.write(text, name)
+        options = ["--camera", "eye", "--size", "400x300", "--background", "transparent", "--no-shadows"]
+        done = kiln.run("render", f"{name}.toml", "-o", f"{name}.png", *options)
+        assert done.returncode == 0, done.stderr
+        pixels.append(np.asarray(Image.open(kiln.folder / f"{name}.png"), dtype=float)[:, :, 3] / 255.0)
+    radius = 150 / np.tan(np.radians(20)) * np.tan(np.arcsin(1 / 5))
+    rows, columns = np.mgrid[0:300, 0:400] + 0.5
+    away = np.hypot(rows - 150, columns - 200)
+    assert np.all(pixels[0][away < radius - 1] == 1.0)
+    assert np.all(pixels[0][away > radius + 1] == 0.0)
+    # The side that is seen stands 1.95 to the right and is 0.1 high: at the border so high as the lens alone says.
+    right = pixels[1][:, 399] > 0.5
+    height = 0.05 * 199.5 / 1.95
+    middle = np.abs(np.arange(300) + 0.5 - 150)
+    assert right[middle < height - 1].all()
+    assert not right[middle > height + 1].any()

@@ -45,6 +45,31 @@ pub struct Node {
     pub weights: Vec<f64>,
     /// Nodes that stand for it at coarser levels of detail (`MSFT_lod`).
     pub levels: Vec<usize>,
+    /// The camera at it, which looks along its -z with y up.
+    pub lens: Option<Lens>,
+}
+
+/// How a camera sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lens {
+    /// What is far away is smaller.
+    Perspective {
+        /// The angle from the lower to the upper border, radians.
+        upright: f64,
+        /// Nearer than this, nothing is seen.
+        near: f64,
+        /// Nor farther than this; `None` is endless.
+        far: Option<f64>,
+    },
+    /// Parallel lines stay parallel.
+    Orthographic {
+        /// Half of what is seen from the lower to the upper border.
+        half: f64,
+        /// Nearer than this, nothing is seen.
+        near: f64,
+        /// Nor farther than this.
+        far: f64,
+    },
 }
 
 /// Where a node stands in its parent.
@@ -381,6 +406,20 @@ fn node(own: &gltf::Node<'_>) -> Node {
         skin: own.skin().map(|skin| skin.index()),
         weights: own.weights().unwrap_or_default().iter().map(|weight| f64::from(*weight)).collect(),
         levels: levels(own),
+        lens: own.camera().map(|camera| lens(&camera)),
+    }
+}
+
+fn lens(camera: &gltf::Camera<'_>) -> Lens {
+    match camera.projection() {
+        gltf::camera::Projection::Perspective(own) => Lens::Perspective {
+            upright: own.yfov().into(),
+            near: own.znear().into(),
+            far: own.zfar().map(f64::from),
+        },
+        gltf::camera::Projection::Orthographic(own) => {
+            Lens::Orthographic { half: own.ymag().into(), near: own.znear().into(), far: own.zfar().into() }
+        }
     }
 }
 

@@ -17,7 +17,7 @@ pub use texture::{Texture, Wrap};
 use crate::geometry::number::{floor_count, sin_cos, single};
 use crate::import::gltf;
 pub use crate::import::gltf::{
-    Channel, Clip, GltfFault, Mesh, Node, Part, Place, Skin, Steps, Target, Track,
+    Channel, Clip, GltfFault, Lens, Mesh, Node, Part, Place, Skin, Steps, Target, Track,
 };
 
 /// A file, read.
