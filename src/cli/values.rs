@@ -35,14 +35,8 @@ pub(super) fn profile(text: &str) -> Result<Profile, String> {
 }
 
 pub(super) fn heat(text: &str) -> Result<Heat, String> {
-    match text.split_once(':') {
-        Some(("weights", joint)) if !joint.is_empty() => Ok(Heat::Weights(joint.to_owned())),
-        None if text == "deviation" => Ok(Heat::Deviation),
-        None if text == "curvature" => Ok(Heat::Curvature),
-        None if text == "uv-stretch" => Ok(Heat::UvStretch),
-        None if text == "texel-density" => Ok(Heat::TexelDensity),
-        _ => Err("write deviation, curvature, uv-stretch, texel-density, or weights:JOINT".to_owned()),
-    }
+    let wrong = || "write deviation, curvature, uv-stretch, texel-density, or weights:JOINT".to_owned();
+    Heat::named(text).ok_or_else(wrong)
 }
 
 pub(super) fn view(text: &str) -> Result<View, String> {

@@ -6,6 +6,7 @@ import concurrent.futures
 import http.client
 import json
 import os
+import re
 import shutil
 import socket
 import subprocess
@@ -84,6 +85,20 @@ def test_clips_are_scrubbed_and_played(seen: dict[str, Any]) -> None:
     assert again == early
     assert seen["kept"] == early
     assert seen["played"]
+
+
+def test_measures_are_shown_as_colors(seen: dict[str, Any]) -> None:
+    heats = seen["heats"]
+    assert heats["list"][:3] == ["(materials)", "deviation", "curvature"]
+    shown = [heats[name]["picture"] for name in ("curvature", "deviation", "(materials)")]
+    assert len(set(shown)) == 3
+    # It has no texture: the page says so, and shows the materials.
+    assert "no texels" in heats["texel-density"]["note"]
+    assert heats["texel-density"]["picture"] == heats["(materials)"]["picture"]
+    if seen["viewer"] == "three.js":
+        assert any(name.startswith("weights:") for name in heats["list"])
+        assert re.match(r"curvature, 1/m: violet 0 to yellow \d", heats["curvature"]["note"])
+        assert heats["(materials)"]["note"] == ""
 
 
 def test_switches_change_the_picture(seen: dict[str, Any]) -> None:

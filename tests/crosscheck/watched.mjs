@@ -189,6 +189,14 @@ async function motion(browser) {
   await page.locator('#clip').selectOption({ index: 1 });
   found.duration = Number(await page.locator('#time').getAttribute('max'));
   found.scrubbed = [await scrub(0.3), await scrub(0.6), await scrub(0.3)];
+  found.heats = { list: await page.locator('#heat option').allInnerTexts() };
+  for (const name of ['curvature', 'deviation', 'texel-density', '(materials)']) {
+    await page.locator('#heat').selectOption(name);
+    const worn = name === '(materials)' ? '' : name;
+    await page.waitForFunction((worn) => document.body.dataset.heat === worn, worn, { timeout: SECONDS * 1000 });
+    await settled(page, true);
+    found.heats[name] = { picture: await picture(page), note: await page.locator('#note').innerText() };
+  }
   found.switches = {};
   for (const box of await page.locator('#options input').all()) {
     const name = await box.getAttribute('id');

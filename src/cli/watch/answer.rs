@@ -8,9 +8,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde_json::json;
 
 use super::baked::Asset;
+use super::heat;
 use super::request::Request;
 use super::show::Stand;
 use crate::cli::three::Three;
+use crate::preview::heat::Heat;
 use crate::preview::{Camera, Look, Moment, Shading, Stage, View, draw_picture};
 
 /// What all connections share.
@@ -107,6 +109,10 @@ pub(super) fn answer(request: &Request, site: &Site) -> Answer {
             Some(asset) => good("model/gltf-binary", Body::Asset(asset)),
             None => nothing(),
         },
+        "/heat" => match colors(request, site) {
+            Ok(bytes) => good("application/octet-stream", Body::Own(bytes)),
+            Err(content) => content,
+        },
         "/frame" => match frame(request, site) {
             Ok(png) => good("image/png", Body::Own(png)),
             Err(content) => content,
@@ -153,6 +159,27 @@ fn place(request: &Request, site: &Site) -> Option<String> {
     Some(json!({ "file": file, "line": line, "current": site.stand.now().good }).to_string())
 }
 
+/// What a request asks to be shown as colors; none where it asks for nothing of that kind.
+fn heat(request: &Request) -> Result<Option<Heat>, Content> {
+    let Some(text) = request.value("heat") else { return Ok(None) };
+    let known = Heat::named(text).map(Some);
+    known.ok_or_else(|| wrong((400, "Bad Request"), format!("`{text}` is nothing to be measured")))
+}
+
+/// Why there is nothing to be measured: no error, the page says it.
+fn unmeasured(message: String) -> Content {
+    wrong((200, "OK"), message)
+}
+
+/// The colors that a request names.
+fn colors(request: &Request, site: &Site) -> Result<Vec<u8>, Content> {
+    let asset = asset(request, site).ok_or_else(nothing)?;
+    let heat =
+        heat(request)?.ok_or_else(|| wrong((400, "Bad Request"), "write what is measured".to_owned()))?;
+    let _turn = site.drawing.lock().unwrap_or_else(PoisonError::into_inner);
+    heat::colors(&asset, &heat).map_err(unmeasured)
+}
+
 /// Pixels that a picture may have across and down.
 const PIXELS: std::ops::RangeInclusive<u32> = 1..=2048;
 
@@ -173,10 +200,27 @@ fn frame(request: &Request, site: &Site) -> Result<Vec<u8>, Content> {
     let moment = Moment { clip: clip.map(|(name, _)| name.to_owned()), time };
     let shading = if request.value("normals").is_some() { Shading::Normals } else { Shading::Standard };
     let look = Look { size: (width, height), shading, ..Look::default() };
+    let heat = heat(request)?;
     let failed = |message: String| wrong((500, "Internal Server Error"), message);
     let _turn = site.drawing.lock().unwrap_or_else(PoisonError::into_inner);
     let (drawn, bounds) = asset.drawn().map_err(|message| failed(message.to_owned()))?;
-    let stage = Stage::new(drawn, &moment).map_err(|error| failed(error.to_string()))?;
     let camera = Camera::turning(bounds, view, look.projection, look.size);
-    draw_picture(drawn, &stage, &camera, &look).png().map_err(|error| failed(error.to_string()))
+    let picture = match heat {
+        Some(heat) => {
+            let stage = heat::heated(&asset, &moment, &heat).map_err(unmeasured)?;
+            let picture = draw_picture(drawn, &stage, &camera, &look);
+            match &stage.heat {
+                Some(map) => {
+                    let range = (map.low, map.high, map.greatest);
+                    picture.with_legend(&heat.title(), range, look.background)
+                }
+                None => picture,
+            }
+        }
+        None => {
+            let stage = Stage::new(drawn, &moment).map_err(|error| failed(error.to_string()))?;
+            draw_picture(drawn, &stage, &camera, &look)
+        }
+    };
+    picture.png().map_err(|error| failed(error.to_string()))
 }

@@ -16,6 +16,7 @@ use crate::geometry::number::Bounds;
 use crate::language::Document;
 use crate::language::diagnostic::Diagnostics;
 use crate::language::source::SourceMap;
+use crate::preview::heat::Measured;
 use crate::preview::{self, Moment, Stage};
 use crate::project::{Task, Told, reason};
 use crate::realize::Keep;
@@ -24,7 +25,7 @@ use crate::realize::Keep;
 pub(super) struct Bake<'a> {
     task: &'a Task,
     /// What was read; none where the project's folder cannot be reached.
-    seen: Option<Seen>,
+    seen: Option<Arc<Seen>>,
     /// What is baked; nothing where any part of it failed.
     pub(super) assets: Vec<Arc<Asset>>,
     /// Errors and warnings of the document.
@@ -41,7 +42,7 @@ impl<'a> Bake<'a> {
         let mut bake =
             Self { task, seen: None, assets: Vec::new(), diagnostics: None, failure: None, sources: None };
         let seen = match Seen::new(&task.root) {
-            Ok(seen) => seen,
+            Ok(seen) => Arc::new(seen),
             Err(error) => {
                 bake.failure = Some(format!("{}: {}", task.root.display(), reason(&error)));
                 return bake;
@@ -55,10 +56,10 @@ impl<'a> Bake<'a> {
         bake
     }
 
-    fn document(&mut self, (watch, documents): (&Watch, &Documents), memory: &Arc<Memory>, seen: &Seen) {
+    fn document(&mut self, (watch, documents): (&Watch, &Documents), memory: &Arc<Memory>, seen: &Arc<Seen>) {
         let task = self.task;
-        let document = match Document::load_within(&task.path, seen, task.limits) {
-            Ok(document) => document,
+        let document = match Document::load_within(&task.path, seen.as_ref(), task.limits) {
+            Ok(document) => Arc::new(document),
             Err(list) => {
                 self.sources = Some(Arc::clone(list.sources()));
                 self.diagnostics = Some(list);
@@ -68,19 +69,18 @@ impl<'a> Bake<'a> {
         self.sources = Some(Arc::clone(document.sources()));
         let variants: Vec<Option<String>> =
             std::iter::once(None).chain(document.variants().into_iter().map(Some)).collect();
-        let compile = |variant: &Option<String>| {
-            let options = Options {
-                variant: variant.clone(),
-                overrides: documents.overrides(&document),
-                name: task.name().to_owned(),
-                path: task.path.clone(),
-                profiles: watch.profile.clone(),
-                origins: true,
-                keep: Some(Arc::clone(memory) as Arc<dyn Keep>),
-                ..Options::default()
-            };
-            compile_profiles(&document, seen, &options)
+        let options = |variant: &Option<String>| Options {
+            variant: variant.clone(),
+            overrides: documents.overrides(&document),
+            name: task.name().to_owned(),
+            path: task.path.clone(),
+            profiles: watch.profile.clone(),
+            origins: true,
+            keep: Some(Arc::clone(memory) as Arc<dyn Keep>),
+            ..Options::default()
         };
+        let compile =
+            |variant: &Option<String>| compile_profiles(&document, seen.as_ref(), &options(variant));
         // Waking a second thread costs more than a small document takes.
         let results: Vec<_> = if let [one] = variants.as_slice() {
             vec![compile(one)]
@@ -98,7 +98,12 @@ impl<'a> Bake<'a> {
                     for mut compiled in all {
                         let none = document.diagnostics(Vec::new());
                         tell(std::mem::replace(&mut compiled.warnings, none));
-                        baked.push(Arc::new(Asset::new(compiled, document.sources())));
+                        let source = Source {
+                            document: Arc::clone(&document),
+                            seen: Arc::clone(seen),
+                            options: options(variant),
+                        };
+                        baked.push(Arc::new(Asset::new(compiled, source)));
                     }
                 }
                 Err(list) => tell(list),
@@ -117,13 +122,13 @@ impl<'a> Bake<'a> {
 
     /// Whether a file that was read holds something else by now, or can be read at all.
     pub(super) fn has_changed(&self) -> bool {
-        self.seen.as_ref().map_or_else(|| Seen::new(&self.task.root).is_ok(), Seen::has_changed)
+        self.seen.as_ref().map_or_else(|| Seen::new(&self.task.root).is_ok(), |seen| seen.has_changed())
     }
 
     /// Where the files stand that the bake depends on.
     pub(super) fn paths(&self) -> BTreeSet<PathBuf> {
         let own = self.task.root.join(&self.task.path);
-        self.seen.iter().flat_map(Seen::paths).chain([own]).collect()
+        self.seen.iter().flat_map(|seen| seen.paths()).chain([own]).collect()
     }
 }
 
@@ -132,18 +137,26 @@ pub(super) struct Asset {
     /// Names its bytes: a part of their hash.
     pub(super) key: String,
     pub(super) compiled: Compiled,
-    /// The texts that it was made from.
-    sources: Arc<SourceMap>,
+    /// What it was made from.
+    source: Source,
     drawn: OnceLock<Result<Drawn, String>>,
+    deviations: OnceLock<Vec<Option<Measured>>>,
+}
+
+/// What makes an asset.
+struct Source {
+    document: Arc<Document>,
+    seen: Arc<Seen>,
+    options: Options,
 }
 
 /// A file that is read for drawing, and the box around it at rest.
 pub(super) type Drawn = (preview::asset::Asset, Bounds);
 
 impl Asset {
-    fn new(compiled: Compiled, sources: &Arc<SourceMap>) -> Self {
+    fn new(compiled: Compiled, source: Source) -> Self {
         let key = blake3::hash(&compiled.bytes).to_hex()[..32].to_owned();
-        Self { key, compiled, sources: Arc::clone(sources), drawn: OnceLock::new() }
+        Self { key, compiled, source, drawn: OnceLock::new(), deviations: OnceLock::new() }
     }
 
     /// What there is to say of it, in a line.
@@ -167,9 +180,21 @@ impl Asset {
         self.drawn.get_or_init(read).as_ref().map_err(String::as_str)
     }
 
+    /// For each mesh how far its triangles lie from the true surface; none of any where its files hold something else by
+    /// now. Baked once more for that, when it is first asked for.
+    pub(super) fn deviations(&self) -> &[Option<Measured>] {
+        self.deviations.get_or_init(|| {
+            let Source { document, seen, options } = &self.source;
+            let options = Options { deviations: true, origins: false, keep: None, ..options.clone() };
+            let baked = compile_profiles(document, seen.as_ref(), &options).unwrap_or_default();
+            let same = |one: &Compiled| one.file == self.compiled.file && one.bytes == self.compiled.bytes;
+            baked.into_iter().find(same).map(|one| one.deviations).unwrap_or_default()
+        })
+    }
+
     /// File and line of the definition that a triangle comes from.
     pub(super) fn place(&self, mesh: usize, corners: [usize; 3]) -> Option<(&str, usize)> {
         let span = self.compiled.origins.as_ref()?.place(mesh, corners)?;
-        self.sources.locate(span).map(|place| (place.file, place.line))
+        self.source.document.sources().locate(span).map(|place| (place.file, place.line))
     }
 }

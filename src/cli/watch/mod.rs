@@ -10,6 +10,7 @@
 mod answer;
 mod baked;
 mod folders;
+mod heat;
 mod request;
 mod seen;
 mod server;

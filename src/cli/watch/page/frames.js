@@ -1,5 +1,8 @@
 // Shows pictures of a file that Kiln draws itself, turned by dragging. One is asked for at a time.
 
+// Whether an answer is words instead of a picture.
+const says = (answer) => answer.headers.get('content-type')?.startsWith('text/plain');
+
 // Degrees for a pixel.
 const SPEED = 0.4;
 
@@ -31,6 +34,14 @@ export class Frames {
     this.draw();
   }
 
+  // Shows what is measured as colors; what is wrong with that, if anything is.
+  async heat(what) {
+    this.measured = what;
+    this.complaint = '';
+    await this.draw();
+    return this.complaint;
+  }
+
   pose(clip, time) {
     this.moment = { clip, time };
     this.draw();
@@ -57,6 +68,12 @@ export class Frames {
       this.waiting = false;
       const { key } = this;
       const answer = await fetch(this.address());
+      if (this.measured && says(answer)) {
+        this.complaint = (await answer.text()).trim();
+        this.measured = null;
+        this.waiting = true;
+        continue;
+      }
       // Its bytes are gone: later ones are on their way.
       if (answer.status !== 200) continue;
       const picture = URL.createObjectURL(await answer.blob());
@@ -79,6 +96,7 @@ export class Frames {
     ];
     if (clip >= 0) parts.push(`clip=${clip}&time=${time}`);
     if (this.on.normals) parts.push('normals');
+    if (this.measured) parts.push(`heat=${encodeURIComponent(this.measured)}`);
     return `/frame?${parts.join('&')}`;
   }
 

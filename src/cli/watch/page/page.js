@@ -88,12 +88,28 @@ function chooseClip() {
   if (!chosen) stop();
 }
 
+// What is measured on the surface: of skins also the weight of each joint.
+function fillHeats() {
+  const joints = viewer.joints?.() ?? [];
+  const measures = ['deviation', 'curvature', 'uv-stretch', 'texel-density', ...joints.map((name) => `weights:${name}`)];
+  fill(at('heat'), ['(materials)', ...measures]);
+}
+
+// Shows what was measured as colors, or the materials.
+async function wear() {
+  const chosen = at('heat').selectedIndex > 0 ? at('heat').value : null;
+  at('note').textContent = await viewer.heat(chosen) ?? '';
+  document.body.dataset.heat = chosen ?? '';
+}
+
 async function show() {
   const asset = news.assets.find((one) => one.file === at('asset').value);
   if (!asset || asset.key === shown?.key) return;
   if (await viewer.load({ ...asset, address: `/asset?key=${asset.key}` })) {
     shown = asset;
     fillClips(asset);
+    fillHeats();
+    if (at('heat').selectedIndex > 0 || document.body.dataset.heat) await wear();
     pose();
     Object.assign(document.body.dataset, { shown: asset.key, shownFile: asset.file });
   }
@@ -138,8 +154,10 @@ at('asset').addEventListener('change', () => { tell(); show(); });
 at('clip').addEventListener('change', () => { chooseClip(); pose(); });
 at('time').addEventListener('input', () => { stop(); pose(); });
 at('play').addEventListener('click', () => (playing ? stop() : play()));
+at('heat').addEventListener('change', () => wear());
 at('fit').addEventListener('click', () => viewer.fit());
 fillClips({ clips: [] });
+fillHeats();
 
 const events = new EventSource('/news');
 events.addEventListener('message', (event) => hear(event.data));

@@ -30,6 +30,7 @@ export class Viewer {
     this.model = null;
     this.turn = 0;
     this.normals = new THREE.MeshNormalMaterial({ side: THREE.DoubleSide });
+    this.colored = new THREE.MeshLambertMaterial({ side: THREE.DoubleSide, vertexColors: true });
     this.listen();
     new ResizeObserver(() => this.resize()).observe(place);
     this.resize();
@@ -67,7 +68,9 @@ export class Viewer {
     const joints = new THREE.SkeletonHelper(file.scene);
     this.model = { key: asset.key, file, scene: file.scene, joints, mixer: new THREE.AnimationMixer(file.scene) };
     file.scene.traverse((object) => {
-      if (object.material) object.userData.kilnMaterial = object.material;
+      if (!object.material) return;
+      object.userData.kilnMaterial = object.material;
+      object.userData.kilnGeometry = object.geometry;
     });
     this.scene.add(file.scene, joints);
     this.unpick();
@@ -104,13 +107,54 @@ export class Viewer {
     if (!this.model) return;
     this.model.joints.visible = Boolean(this.on.joints);
     this.normals.wireframe = Boolean(this.on.wireframe);
+    this.colored.wireframe = Boolean(this.on.wireframe);
     this.model.scene.traverse((object) => {
       const own = object.userData.kilnMaterial;
       if (!own) return;
-      object.material = this.on.normals && object.isMesh ? this.normals : own;
+      const { kilnHeat: heat, kilnGeometry: geometry } = object.userData;
+      object.geometry = heat ?? geometry;
+      object.material = this.on.normals && object.isMesh ? this.normals : heat ? this.colored : own;
       for (const material of [own].flat()) material.wireframe = Boolean(this.on.wireframe);
     });
     this.draw();
+  }
+
+  // The names of joints that carry a skin.
+  joints() {
+    const names = new Set();
+    this.model?.scene.traverse((object) => {
+      for (const bone of object.skeleton?.bones ?? []) names.add(bone.userData.name ?? bone.name);
+    });
+    return [...names];
+  }
+
+  // Shows what is measured as colors, or with null the materials again; gives the scale, or why there is none.
+  async heat(what) {
+    const { model } = this;
+    if (!model) return '';
+    const answer = what ? await fetch(`/heat?key=${model.key}&heat=${encodeURIComponent(what)}`) : null;
+    const says = answer?.headers.get('content-type')?.startsWith('text/plain');
+    const bytes = answer?.status === 200 && !says ? await answer.arrayBuffer() : null;
+    const complaint = says ? (await answer.text()).trim() : '';
+    if (model !== this.model) return '';
+    const found = bytes ? readColors(bytes) : null;
+    model.scene.traverse((object) => {
+      if (!object.isMesh) return;
+      object.userData.kilnHeat?.dispose();
+      delete object.userData.kilnHeat;
+      const { associations } = model.file.parser;
+      const part = associations.get(object)?.primitives ?? 0;
+      const node = associations.get(object)?.nodes ?? associations.get(object.parent)?.nodes;
+      const colors = found?.colors.get(`${node}/${part}`);
+      if (!colors) return;
+      const plain = object.userData.kilnGeometry;
+      const heat = plain.index ? plain.toNonIndexed() : plain.clone();
+      heat.setAttribute('color', new THREE.BufferAttribute(colors, 3));
+      object.userData.kilnHeat = heat;
+    });
+    this.unpick();
+    this.wear();
+    return found?.scale ?? complaint;
   }
 
   // Shows a moment of a clip, -1 for rest.
@@ -197,8 +241,11 @@ export class Viewer {
     this.unpick();
     this.draw();
     if (!hit) return;
-    const corners = [hit.face.a, hit.face.b, hit.face.c];
-    const points = corners.map((corner) => {
+    const drawn = [hit.face.a, hit.face.b, hit.face.c];
+    // Colors stand on corners of their own; the file knows those that triangles share.
+    const { index } = hit.object.userData.kilnGeometry;
+    const corners = hit.object.userData.kilnHeat && index ? drawn.map((corner) => index.getX(corner)) : drawn;
+    const points = drawn.map((corner) => {
       const point = hit.object.getVertexPosition(corner, new THREE.Vector3());
       return hit.object.localToWorld(point);
     });
@@ -218,10 +265,27 @@ export class Viewer {
   }
 }
 
+// The colors of `/heat` by node and primitive, and their scale in words.
+function readColors(bytes) {
+  const end = new Uint8Array(bytes).indexOf(10) + 1;
+  const head = JSON.parse(new TextDecoder().decode(bytes.slice(0, end)));
+  const colors = new Map();
+  let start = end;
+  for (const { node, part, triangles } of head.pieces) {
+    colors.set(`${node}/${part}`, new Float32Array(bytes, start, triangles * 9));
+    start += triangles * 36;
+  }
+  const number = (value) => Number(value.toPrecision(3)).toString();
+  const most = head.greatest > head.high ? `, up to ${number(head.greatest)}` : '';
+  return { colors, scale: `${head.title}: violet ${number(head.low)} to yellow ${number(head.high)}${most}` };
+}
+
 // Frees what a model has on the graphics card.
 function dispose(root) {
   root.traverse((object) => {
     object.geometry?.dispose();
+    object.userData.kilnGeometry?.dispose();
+    object.userData.kilnHeat?.dispose();
     object.skeleton?.dispose();
     for (const material of [object.userData.kilnMaterial ?? object.material ?? []].flat()) {
       for (const value of Object.values(material)) if (value?.isTexture) value.dispose();
