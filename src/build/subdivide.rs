@@ -37,6 +37,7 @@ fn scheme(written: SubdivisionScheme) -> Scheme {
 
 fn crease(written: &SubdivideCrease) -> Crease {
     let edges = match &written.crease_angle {
+        _ if written.imported.value => CreaseEdges::Own,
         Some(angle) => CreaseEdges::Angle(angle.value),
         None => CreaseEdges::Pairs(written.edges.iter().map(|pair| [pair.value[0], pair.value[1]]).collect()),
     };

@@ -30,6 +30,10 @@ fn advice(fault: &SubdivideFault) -> (Code, &'static str) {
         SubdivideFault::NoEdge { .. } => {
             (Code::NoCageEdge, "name two neighbors along a side of a face; vertices count from 0")
         }
+        SubdivideFault::NoCreases => (
+            Code::NoCageEdge,
+            "write `edges` or `crease-angle`; OBJ files say it by lines such as `t crease 2/1/0 0 1 2.5`",
+        ),
         SubdivideFault::NoVertex { .. } => (Code::NoCageEdge, "vertices count from 0"),
         SubdivideFault::NotTriangles { .. } => (
             Code::NeedsTriangles,

@@ -1,4 +1,4 @@
-//! Wavefront OBJ: polygons with UVs, normals, smoothing groups and materials.
+//! Wavefront OBJ: polygons with UVs, normals, smoothing groups, materials, and the creases that tags of subdivision say.
 //!
 //! The text passes through `lines` first, which checks every line, keeps what the parser drops (smoothing groups,
 //! group names, which corners have attributes) and hands on a clean text of vertices and faces in one object; `tobj`
@@ -6,6 +6,9 @@
 
 mod lines;
 mod mtl;
+mod tags;
+
+use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
 
@@ -78,6 +81,7 @@ fn mesh_of(parsed: &tobj::Mesh, scan: &Scan) -> PolygonMesh {
         has_smoothing: scan.has_smoothing,
         ..PolygonMesh::default()
     };
+    take_creases(&mut mesh, scan);
     let mut end = 0;
     for (loops_end, &FaceRecord { corners, material, smoothing }) in (1..).zip(&scan.faces) {
         end += corners;
@@ -85,6 +89,22 @@ fn mesh_of(parsed: &tobj::Mesh, scan: &Scan) -> PolygonMesh {
         mesh.faces.push(Face { loops_end, material, smoothing });
     }
     mesh
+}
+
+/// Creases between points that faces use; the parser numbers these anew.
+fn take_creases(mesh: &mut PolygonMesh, scan: &Scan) {
+    if scan.creases.is_empty() && scan.sharp_points.is_empty() {
+        return;
+    }
+    let mut points: HashMap<u32, PointIndex> = HashMap::new();
+    for (vertex, &point) in scan.vertices.iter().zip(&mesh.corners) {
+        points.insert(vertex - 1, point);
+    }
+    let of = |vertex: &u32| points.get(vertex).copied();
+    let edges = scan.creases.iter();
+    mesh.creases = edges.filter_map(|([a, b], sharpness)| Some(([of(a)?, of(b)?], *sharpness))).collect();
+    let sharp = scan.sharp_points.iter();
+    mesh.sharp_points = sharp.filter_map(|(vertex, sharpness)| Some((of(vertex)?, *sharpness))).collect();
 }
 
 /// What the libraries say of the materials that faces use.

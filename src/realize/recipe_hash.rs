@@ -208,6 +208,8 @@ fn polygons(feed: &mut Feed, mesh: &PolygonMesh) {
         corner_normals,
         colors,
         corner_colors,
+        creases,
+        sharp_points,
         materials,
         has_smoothing,
         smoothing_masks,
@@ -220,5 +222,9 @@ fn polygons(feed: &mut Feed, mesh: &PolygonMesh) {
     for list in [loop_ends, corner_uvs, corner_normals, corner_colors] {
         feed.numbers(list.len(), list.iter().map(|index| f64::from(*index)));
     }
-    feed.add(faces).add(colors).add(&(materials, has_smoothing, smoothing_masks));
+    feed.add(faces).add(colors).add(&(creases, sharp_points)).add(&(
+        materials,
+        has_smoothing,
+        smoothing_masks,
+    ));
 }

@@ -1,5 +1,9 @@
 //! Subdivision surfaces in the file: closed, on their limit, with what their cages carry.
 
+use kiln::compile::Options;
+use kiln::language::Document;
+use kiln::language::source::MemoryFiles;
+
 use super::{Baked, assert_near, bake};
 
 fn last(baked: &Baked) -> kiln::report::ShapeFacts {
@@ -62,4 +66,34 @@ fn texture_coordinates_are_carried() {
     let v =
         |of: fn(f64) -> f64| places.iter().zip(&charts).all(|(place, chart)| near(of(place[2]), chart[1]));
     assert!(v(|z| -z) || v(|z| 1.0 + z), "{charts:?}");
+}
+
+/// A cube whose file has sharp edges and a sharp vertex: as if the document named them. The file numbers its vertices
+/// otherwise than faces use them, and has one that none uses.
+#[test]
+fn creases_of_a_file_are_those_of_the_document() {
+    let cube = "v 9 9 9\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n\
+                f 6 9 8 7\nf 2 3 4 5\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 9 5\nf 5 9 6 2\n";
+    let tags = "t crease 5/4/0 1 2 3 4 1 2.5 2.5 2.5 2.5\nt crease 2/1/0 5 6 10\nt corner 1/1/0 7 1.5\n\
+                t crease 2/1/0 0 1 4\nt interpolateboundary 1/0/0 2\nt crease 2/1/0 oops\n";
+    let spec = |extra: &str| format!("[shape.a.subdivide]\ncage = {{ import = {{ file = \"cube.obj\" }} }}\nlevels = 3\n{extra}");
+    let bake = |obj: &str, extra: &str| {
+        let files = MemoryFiles::new().with("spec.toml", spec(extra)).with("cube.obj", obj);
+        let document = Document::load("spec.toml", &files).unwrap_or_else(|found| panic!("{found}"));
+        kiln::compile(&document, &files, &Options { name: "asset".to_owned(), ..Options::default() })
+    };
+    let whole = format!("{cube}{tags}");
+    // In the order of faces: 6 9 8 7 2 3 4 5 of the file are 0 to 7 of the cage.
+    let named = "creases = [{ edges = [[4, 5], [5, 6], [6, 7], [7, 4]], sharpness = 2.5 }, { edges = [[0, 3]], sharpness = \"sharp\" }]\n\
+                 corners = [{ vertex = 2, sharpness = 1.5 }]";
+    let own = bake(&whole, "creases = [{ imported = true }]").expect("it bakes");
+    let by_name = bake(cube, named).expect("it bakes");
+    assert_eq!(own.bytes, by_name.bytes);
+    let smooth = bake(cube, "").expect("it bakes");
+    assert_ne!(own.bytes, smooth.bytes, "the creases are seen");
+    assert_eq!(bake(&whole, "").expect("it bakes").bytes, smooth.bytes, "nobody asked for them");
+    let said = own.warnings.render(false);
+    assert!(said.contains("tags other than") && said.contains("a tag is broken"), "{said}");
+    let refused = bake(cube, "creases = [{ imported = true }]").expect_err("there are none").render(false);
+    assert!(refused.contains("says of no edge and of no vertex"), "{refused}");
 }

@@ -46,6 +46,10 @@ pub struct PolygonMesh {
     pub colors: Vec<Color>,
     /// For each corner an index into `colors`; empty when the mesh has none.
     pub corner_colors: Vec<u32>,
+    /// Edges that a file says are sharp where the mesh is subdivided, by their points, and for how many steps.
+    pub creases: Vec<([PointIndex; 2], f64)>,
+    /// Points that it says are sharp, and for how many steps.
+    pub sharp_points: Vec<(PointIndex, f64)>,
     /// Names of materials.
     pub materials: Vec<String>,
     /// Whether [`Face::smoothing`] was given; otherwise an angle decides which edges are hard.
@@ -88,6 +92,14 @@ pub enum PolygonError {
     Empty {
         /// Which face.
         face: u32,
+    },
+    /// A crease names a point that does not exist.
+    #[error("a crease uses point {point}, but there are only {count} points")]
+    CreaseOutOfRange {
+        /// The point it asks for.
+        point: u32,
+        /// How many there are.
+        count: u32,
     },
     /// Attribute indices that do not fit the corners.
     #[error("face {face} uses {what} {index}, but there are only {count}")]
@@ -193,6 +205,12 @@ impl PolygonMesh {
         self.validate_lengths()?;
         if let Some(point) = self.points.iter().position(|point| !point.is_finite()) {
             return Err(PolygonError::NotFinite { point: index(point), position: self.points[point] });
+        }
+        let count = self.points.len();
+        let ends = self.creases.iter().flat_map(|(ends, _)| ends);
+        let mut sharp = ends.chain(self.sharp_points.iter().map(|(point, _)| point));
+        if let Some(point) = sharp.find(|point| point.subscript() >= count) {
+            return Err(PolygonError::CreaseOutOfRange { point: point.0, count: index(count) });
         }
         (0..self.faces.len()).try_for_each(|face| self.validate_face(face))
     }
@@ -313,7 +331,7 @@ mod tests {
     use glam::{DVec2, DVec3};
 
     use super::{NONE, PolygonError, PolygonMesh, newell};
-    use crate::geometry::mesh::Color;
+    use crate::geometry::mesh::{Color, PointIndex};
 
     fn square() -> PolygonMesh {
         let points = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
@@ -382,6 +400,10 @@ mod tests {
         mesh.corner_colors = vec![0, 0, NONE, 0];
         let expected = PolygonError::AttributeOutOfRange { face: 0, what: "color", index: NONE, count: 1 };
         assert_eq!(mesh.validate(), Err(expected));
+
+        let mut mesh = square();
+        mesh.creases = vec![([PointIndex(0), PointIndex(4)], 1.0)];
+        assert_eq!(mesh.validate(), Err(PolygonError::CreaseOutOfRange { point: 4, count: 4 }));
 
         let mut mesh = square();
         mesh.loop_ends[0] = 9;

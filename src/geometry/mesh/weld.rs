@@ -26,6 +26,10 @@ impl PolygonMesh {
         for corner in &mut self.corners {
             *corner = PointIndex(welded.map[corner.subscript()]);
         }
+        let of = |point: PointIndex| PointIndex(welded.map[point.subscript()]);
+        self.creases.iter_mut().for_each(|(ends, _)| *ends = ends.map(of));
+        self.creases.retain(|([a, b], _)| a != b);
+        self.sharp_points.iter_mut().for_each(|(point, _)| *point = of(*point));
     }
 }
 

@@ -8,6 +8,9 @@ pub enum SubdivideFault {
     /// No faces.
     #[error("the cage has no faces")]
     Empty,
+    /// Its own creases were asked for, and it has none.
+    #[error("the cage says of no edge and of no vertex that it is sharp")]
+    NoCreases,
     /// A face with fewer than three corners.
     #[error("face {face} of the cage has fewer than three corners")]
     FewCorners {

@@ -42,6 +42,8 @@ pub enum CreaseEdges {
     Pairs(Vec<[u32; 2]>),
     /// Those at which the faces turn by more than this many degrees.
     Angle(f64),
+    /// Those that the cage itself says are sharp, and its sharp vertices, each for as many steps as it says.
+    Own,
 }
 
 /// What is asked of a refinement.
@@ -88,7 +90,7 @@ pub fn subdivide(
     triangle_limit: u64,
 ) -> Result<Subdivided, SubdivideFault> {
     let mut cage = Cage::of(mesh, options)?;
-    cage.sharpen(options)?;
+    cage.sharpen(mesh, options)?;
     let classes = cage.classes();
     let (mut levels, scheme) = (0, options.scheme);
     let topology = &cage.level.topology;
@@ -171,17 +173,28 @@ impl Cage {
         Ok(Self { level, charts, colors, origin: flat.origin, faces, corners, triangulated })
     }
 
-    fn sharpen(&mut self, options: &Options) -> Result<(), SubdivideFault> {
+    fn sharpen(&mut self, mesh: &PolygonMesh, options: &Options) -> Result<(), SubdivideFault> {
         let topology = &self.level.topology;
         let mut edges = vec![0.0; topology.edges()];
+        let edge_between = |a: u32, b: u32| {
+            [a, b].into_iter().try_for_each(|vertex| self.check_vertex(vertex))?;
+            Ok(topology.edge_between(a, b).ok_or(SubdivideFault::NoEdge { a, b })? as usize)
+        };
+        let mut own = false;
         for crease in &options.creases {
             match &crease.edges {
                 CreaseEdges::Pairs(pairs) => {
                     for [a, b] in pairs {
-                        [*a, *b].into_iter().try_for_each(|vertex| self.check_vertex(vertex))?;
-                        let found = topology.edge_between(*a, *b);
-                        let edge = found.ok_or(SubdivideFault::NoEdge { a: *a, b: *b })?;
-                        edges[edge as usize] = crease.sharpness;
+                        edges[edge_between(*a, *b)?] = crease.sharpness;
+                    }
+                }
+                CreaseEdges::Own => {
+                    own = true;
+                    if mesh.creases.is_empty() && mesh.sharp_points.is_empty() {
+                        return Err(SubdivideFault::NoCreases);
+                    }
+                    for ([a, b], sharpness) in &mesh.creases {
+                        edges[edge_between(a.0, b.0)?] = *sharpness;
                     }
                 }
                 CreaseEdges::Angle(degrees) => self.sharpen_angles(*degrees, crease.sharpness, &mut edges),
@@ -196,6 +209,9 @@ impl Cage {
                     vertices[vertex as usize] = ENDLESS;
                 }
             }
+        }
+        for (point, sharpness) in mesh.sharp_points.iter().filter(|_| own) {
+            vertices[point.subscript()] = *sharpness;
         }
         for (vertex, sharpness) in &options.corners {
             self.check_vertex(*vertex)?;

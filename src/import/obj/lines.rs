@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::tags::{Tag, tag};
 use crate::import::error::quoted;
 use crate::import::{ImportError, Note};
 
@@ -30,6 +31,11 @@ pub(super) struct Scan {
     /// Material libraries with the lines that name them.
     pub(super) libraries: Vec<(u32, String)>,
     pub(super) has_smoothing: bool,
+    /// For each corner its vertex, counted from 1.
+    pub(super) vertices: Vec<u32>,
+    /// Edges and vertices that tags say are sharp, counted from 0.
+    pub(super) creases: Vec<([u32; 2], f64)>,
+    pub(super) sharp_points: Vec<(u32, f64)>,
     pub(super) notes: Vec<Note>,
     /// Vertices whose numbers are wrong; only a face that uses one makes it an error.
     faults: Vec<ImportError>,
@@ -149,6 +155,7 @@ impl Reader<'_> {
             b"vn" => self.normal(rest),
             b"f" | b"fo" => self.face(rest)?,
             b"s" => self.smoothing(rest),
+            b"t" => self.tag(rest),
             b"g" | b"o" => self.group(keyword, rest),
             b"usemtl" => self.material(rest),
             b"mtllib" => self.scan.libraries.push((self.line, String::from_utf8_lossy(rest).into_owned())),
@@ -253,6 +260,7 @@ impl Reader<'_> {
             self.scan.clean.truncate(start.0);
             self.scan.has_uv.truncate(start.1);
             self.scan.has_normal.truncate(start.1);
+            self.scan.vertices.truncate(start.1);
             return Ok(());
         }
         self.scan.clean.push(b'\n');
@@ -283,6 +291,7 @@ impl Reader<'_> {
         }
         self.scan.has_uv.push(uv != 0);
         self.scan.has_normal.push(normal != 0);
+        self.scan.vertices.push(vertex);
         Ok(())
     }
 
@@ -354,6 +363,15 @@ impl Reader<'_> {
         }));
     }
 
+    fn tag(&mut self, rest: &[u8]) {
+        match tag(words(rest)) {
+            Some(Tag::Crease(edges)) => self.scan.creases.extend(edges),
+            Some(Tag::Corner(vertices)) => self.scan.sharp_points.extend(vertices),
+            Some(Tag::Other) => self.pass_over(b"t"),
+            None => self.pass_over(b"t!"),
+        }
+    }
+
     /// Counts lines that are passed over, by what is said of them.
     fn pass_over(&mut self, keyword: &[u8]) {
         let what = match keyword {
@@ -362,6 +380,8 @@ impl Reader<'_> {
             b"vn!" => "a normal is not made of finite numbers; computed from the faces instead",
             b"f<3" => "a face with fewer than three corners was left out",
             b"s" => "a smoothing group is not a number; taken as off",
+            b"t" => "tags other than `crease` and `corner` are not read",
+            b"t!" => "a tag is broken; left out",
             b"p" => "points are not read",
             b"l" => "lines are not read",
             b"call" | b"csh" => "commands (`call`, `csh`) are not run",

@@ -78,6 +78,9 @@ table! {
         edges: Vec<Sp<Vec<u32>>> = Vec::new();
         /// Instead: all edges at which the faces turn by more than this many degrees.
         crease_angle: Option<Sp<f64>> => Check::within(0.0, 180.0);
+        /// Instead: the edges and vertices that the file of the cage says are sharp, each for as many levels as it says:
+        /// lines `t crease` and `t corner` of an OBJ file, as `OpenSubdiv` has them.
+        imported: Sp<bool> = false;
         /// For how many levels they stay sharp, such as 2 or 1.5; `"sharp"`, or 10, is for ever.
         sharpness: Sp<Sharpness> = Sharpness(FOREVER);
     }
@@ -160,13 +163,16 @@ impl SubdivideCrease {
             reader.report(report.help("write one pair for each edge: `[[0, 1], [1, 2]]`"));
             return false;
         }
-        if self.edges.is_empty() == self.crease_angle.is_some() {
-            return true;
-        }
-        let (code, message) = if self.edges.is_empty() {
-            (Code::MissingField, "missing `edges` or `crease-angle` of crease")
-        } else {
-            (Code::Conflict, "`edges` and `crease-angle` both say which edges are sharp")
+        let said = [
+            (!self.edges.is_empty(), "`edges`"),
+            (self.crease_angle.is_some(), "`crease-angle`"),
+            (self.imported.value, "`imported`"),
+        ];
+        let said: Vec<&str> = said.iter().filter(|(said, _)| *said).map(|(_, name)| *name).collect();
+        let (code, message) = match said[..] {
+            [_] => return true,
+            [] => (Code::MissingField, "missing `edges`, `crease-angle` or `imported` of crease".to_owned()),
+            _ => (Code::Conflict, format!("{} both say which edges are sharp", said.join(" and "))),
         };
         let report = Diagnostic::error(code, message).at(table, "which edges?");
         reader.report(report.help("write one of them; `creases` may have several entries"));
