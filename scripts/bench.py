@@ -30,7 +30,20 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-from peers import booleans, evaluation, farm, gallery, growth, heights, models, motion, packing, specs, surfaces
+from peers import (
+    authoring,
+    booleans,
+    evaluation,
+    farm,
+    gallery,
+    growth,
+    heights,
+    models,
+    motion,
+    packing,
+    specs,
+    surfaces,
+)
 from peers.process import Runs, together
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -55,6 +68,7 @@ PARTS = (
     "growth",
     "farm",
     "packing",
+    "authoring",
     "gallery",
 )
 
@@ -126,7 +140,7 @@ def measure(part: str, folder: Path, options: argparse.Namespace) -> Part:
     if part == "weights":
         peer = [str(PYTHON), str(ROOT / "tests" / "crosscheck" / "blender_weights.py")]
         return motion.measure(KILN, peer, folder, options.runs, tell)
-    if part in ("growth", "farm", "packing", "gallery"):
+    if part in ("growth", "farm", "packing", "authoring", "gallery"):
         return of_files(part, folder, options.runs)
     return tolerance(folder) if part == "tolerance" else grid(part, folder, options.runs)
 
@@ -141,6 +155,8 @@ def of_files(part: str, folder: Path, runs: int) -> Part:
         programs = PEERS / "node_modules" / ".bin"
         plain = ROOT / "tests" / "crosscheck" / "plain.mjs"
         return packing.measure(KILN, (programs, plain), folder, runs, tell)
+    if part == "authoring":
+        return authoring.measure(KILN, [str(PYTHON), str(PEERS / "peer_picture.py")], folder, runs, tell)
     return gallery.measure(KILN, ROOT / "specs", folder, runs, tell)
 
 
@@ -294,6 +310,7 @@ def tables(figures: dict[str, Any]) -> str:
         "growth": growth_table,
         "farm": farm_table,
         "packing": packing_table,
+        "authoring": authoring_table,
         "gallery": gallery_table,
     }
     blocks += [table(figures[part]["rows"]) for part, table in others.items() if part in figures]
@@ -503,6 +520,18 @@ def packing_table(rows: list[dict[str, Any]]) -> str:
         else [row["input"], row["tool"], "failed", *["-"] * (len(head) - 3)]
         for row in rows
     ]  # fmt: skip
+    return markdown(head, body)
+
+
+def authoring_table(rows: list[dict[str, Any]]) -> str:
+    """What a person waits for."""
+    head = ["work", "tool", "ms", "times Kiln"]
+    body = [
+        [row["work"], row["tool"], thousandths(row["seconds"]), ratio(row["times-kiln"])]
+        if row["failure"] is None
+        else [row["work"], row["tool"], "failed", "-"]
+        for row in rows
+    ]
     return markdown(head, body)
 
 

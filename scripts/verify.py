@@ -2,7 +2,7 @@
 """Compares what independent tools compute from every written .glb with the report beside it.
 
     scripts/verify.py out                      every NAME.glb under out/ with its NAME.report.json
-    scripts/verify.py --pictures out           also draws each asset (slow: Cycles on the CPU)
+    scripts/verify.py --pictures out           also draws each asset, by Blender (slow: Cycles on the CPU) and by kiln
     scripts/verify.py --no-report FILE.glb     only shows what the tools find in files of other makers
 
 Writes verify.json and verify.html into the first folder named. Exit code 0: every claim holds; 1: some
@@ -15,6 +15,7 @@ import argparse
 import json
 import math
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from checks.finding import Finding, Measured
 
 PICTURE_WIDTH = 640
+VIEW = "31.8,23.8"
+"""The direction of Blender's pictures, as `kiln render` says it."""
 
 
 def main() -> int:
@@ -41,7 +44,7 @@ def main() -> int:
         return show_measured(measured)
     findings = {name: judge(path, name, measured[path]) for path, name in files}
     folder = options.paths[0] if options.paths[0].is_dir() else options.paths[0].parent
-    pictures = draw(folder, files) if options.pictures else {}
+    pictures = draw(folder, files, options.kiln) if options.pictures else {}
     page.write(folder / "verify.html", findings, pictures)
     write_json(folder / "verify.json", findings, measured)
     return show_findings(findings, {name: measured[path] for path, name in files}, folder)
@@ -52,7 +55,9 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog=Path(sys.argv[0]).name, description=__doc__.split("\n\n")[0])
     parser.add_argument("paths", nargs="+", type=Path, metavar="OUT", help="folders of baked assets, or .glb files")
     parser.add_argument("--no-report", action="store_true", help="only show what the tools find")
-    parser.add_argument("--pictures", action="store_true", help="draw each asset with Blender")
+    parser.add_argument("--pictures", action="store_true", help="draw each asset with Blender and with kiln")
+    kiln = os.environ.get("KILN_BIN") or shutil.which("kiln") or "kiln"
+    parser.add_argument("--kiln", default=kiln, metavar="PROGRAM", help="kiln itself [default: KILN_BIN, else on PATH]")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="tools run at one time")
     options = parser.parse_args()
     for path in options.paths:
@@ -85,14 +90,19 @@ def judge(path: Path, name: str, measured: list[Measured]) -> list[Finding]:
     return compare(name, claims, measured)
 
 
-def draw(folder: Path, files: list[tuple[Path, str]]) -> dict[str, Path]:
-    """Draw each file; returns the pictures by name, relative to `folder`."""
+def draw(folder: Path, files: list[tuple[Path, str]], kiln: str) -> dict[str, dict[str, Path]]:
+    """Draw each file by kiln and by Blender; returns the pictures by name and drawer, relative to `folder`."""
     pictures = {}
     for path, name in files:
         target = folder / "pictures" / Path(name).parent
         line = [str(tools.PYTHON), "-m", "checks.pictures", str(target), str(PICTURE_WIDTH), str(path)]
         subprocess.run(line, cwd=tools.SCRIPTS, stdout=subprocess.DEVNULL, check=True)
-        pictures[name] = Path("pictures") / f"{name}.png"
+        own = target / f"{path.stem}.kiln.png"
+        size = f"{PICTURE_WIDTH}x{PICTURE_WIDTH * 3 // 4}"
+        line = [kiln, "render", str(path), "-o", str(own), "--view", VIEW, "--size", size]
+        subprocess.run(line, stdout=subprocess.DEVNULL, check=True)
+        blender = Path("pictures") / f"{name}.png"
+        pictures[name] = {"kiln": own.relative_to(folder), "Blender": blender}
     return pictures
 
 

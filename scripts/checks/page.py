@@ -19,17 +19,18 @@ h1 { font-size: 1.5rem } h2 { font-size: 1.15rem; margin-top: 2.5rem }
 table { border-collapse: collapse; width: 100% } th, td { text-align: left; padding: .2rem .6rem .2rem 0;
   border-bottom: 1px solid #e2e5e8; vertical-align: top; font-variant-numeric: tabular-nums }
 td.value { font-family: ui-monospace, monospace; font-size: 12px; overflow-wrap: anywhere }
-img { max-width: 30rem; width: 100%; border-radius: 4px; margin: .5rem 0 }
+.pictures { display: flex; gap: 1rem } figure { flex: 1; max-width: 32rem; margin: .5rem 0 }
+figcaption { color: #667 } img { width: 100%; border-radius: 4px }
 .fails { background: #fde8e8 } .warns { background: #fff6dc } .quiet { color: #667 }
 """
 
 
-def write(target: Path, findings: dict[str, list[Finding]], pictures: dict[str, Path]) -> None:
+def write(target: Path, findings: dict[str, list[Finding]], pictures: dict[str, dict[str, Path]]) -> None:
     """Write the page; picture addresses are relative to it."""
     wrong = sum(not f.holds and f.severity == "error" for found in findings.values() for f in found)
     total = sum(map(len, findings.values()))
     verdict = f"{len(findings)} assets, {total} comparisons, {wrong} disagreements"
-    sections = [section(asset, found, pictures.get(asset)) for asset, found in findings.items()]
+    sections = [section(asset, found, pictures.get(asset, {})) for asset, found in findings.items()]
     target.write_text(
         "<!doctype html>\n<html lang=en><meta charset=utf-8><title>Kiln verification</title>"
         f"<style>{STYLE}</style>\n<h1>Kiln verification</h1>\n<p>{verdict}</p>\n" + "\n".join(sections) + "\n</html>\n",
@@ -37,13 +38,16 @@ def write(target: Path, findings: dict[str, list[Finding]], pictures: dict[str, 
     )
 
 
-def section(asset: str, findings: list[Finding], picture: Path | None) -> str:
-    """One asset: its picture and the table of its findings, the failing ones first."""
+def section(asset: str, findings: list[Finding], pictures: dict[str, Path]) -> str:
+    """One asset: its pictures and the table of its findings, the failing ones first."""
     name = html.escape(asset)
-    image = f'<img src="{html.escape(str(picture))}" alt="{name}">' if picture else ""
+    images = "".join(
+        f'<figure><img src="{html.escape(picture.as_posix())}" alt="{name}"><figcaption>{drawer}</figcaption></figure>'
+        for drawer, picture in pictures.items()
+    )
     rows = "\n".join(row(f) for f in sorted(findings, key=lambda f: f.holds))
     return (
-        f"<h2>{name}</h2>\n{image}\n<table>\n<tr><th>fact<th>tool<th>claimed<th>found"
+        f"<h2>{name}</h2>\n<div class=pictures>{images}</div>\n<table>\n<tr><th>fact<th>tool<th>claimed<th>found"
         f"<th>difference<th>allowed</tr>\n{rows}\n</table>"
     )
 

@@ -93,3 +93,16 @@ def test_what_is_wrong_is_said_and_the_rest_is_shown(kiln: Kiln) -> None:
     assert "<p>A &lt;b&gt;box&lt;/b&gt; &amp; more</p>" in page
     assert "wrong" not in page
     assert kiln.run("gallery", "none.toml").returncode == 3
+
+
+def test_the_whole_gallery(kiln: Kiln) -> None:
+    """The project's own: every document is there, each with its picture, and nothing complains."""
+    shutil.copytree(ROOT / "specs", kiln.folder / "specs")
+    done = kiln.run("gallery", "specs", "-o", "site", "--three", str(THREE), seconds=1200)
+    assert done.returncode == 0, done.stderr
+    found = seen(kiln.folder / "site", kiln.folder / "viewer.png")
+    assert found["complaints"] == []
+    tables = [path for path in (ROOT / "specs").rglob("*.toml") if "[shape." in path.read_text(encoding="utf-8")]
+    assert set(found["names"]) >= {str(path.relative_to(ROOT / "specs").with_suffix("")) for path in tables}
+    assert found["pictures"] == [480] * len(found["names"])
+    assert len(found["names"]) > 100

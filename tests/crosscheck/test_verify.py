@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
+from PIL import Image
 
 import made
 from checks import tools
 from checks.compare import compare
 from checks.finding import Measured
+
+if TYPE_CHECKING:
+    from kiln import Kiln
 
 VERIFY = Path(__file__).resolve().parents[2] / "scripts" / "verify.py"
 # Claims that nothing measures: names, and what a claim only sets the scale of.
@@ -149,3 +155,26 @@ def test_no_file_is_a_usage_error(tmp_path: Path) -> None:
     assert run(str(tmp_path)).returncode == 2
     assert run().returncode == 2
     assert run(str(tmp_path / "none")).returncode == 2
+
+
+def test_the_page_has_the_pictures_of_both_drawers(kiln: Kiln) -> None:
+    # A lopsided model: a wrong view would show another outline.
+    spec = (
+        "[shape.arm.box]\nsize = [3, 0.4, 0.6]\n"
+        "[shape.post]\nat = [-1.2, 1, 0.4]\n[shape.post.cylinder]\nradius = 0.2\nheight = 2\n"
+    )
+    kiln.bake(spec)
+    folder = kiln.folder / "out"
+    line = [sys.executable, str(VERIFY), "--pictures", "--kiln", str(kiln.program), str(folder)]
+    done = subprocess.run(line, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    text = (folder / "verify.html").read_text(encoding="utf-8")
+    shown = re.findall(r'<img src="([^"]+)"', text)
+    assert shown == ["pictures/model.kiln.png", "pictures/model.png"]
+    own, blender = (Image.open(folder / name).convert("RGB") for name in shown)
+    assert own.size == blender.size == (640, 480)
+    # Both look from the same side: the post stands on the same side of the middle, higher than wide.
+    background = np.asarray(own)[0, 0].astype(int)
+    rows, columns = np.nonzero(np.abs(np.asarray(own).astype(int) - background).sum(axis=2) > 40)
+    upper = columns[rows < rows.min() + (rows.max() - rows.min()) // 4]
+    assert upper.mean() < columns.mean() - 50
