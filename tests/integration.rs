@@ -3,6 +3,7 @@
 mod architecture;
 mod bake;
 mod build_script;
+mod counts;
 mod curves;
 mod import;
 mod import_gltf;

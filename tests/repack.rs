@@ -536,6 +536,7 @@ fn files_that_are_cut_off_or_changed_are_files_or_faults() {
             assert!(made(&again.bytes, &options).is_ok(), "changed at {at}");
         }
     }
+    crate::counts::tried("damaged-optimized-files", 2 * whole.len());
 }
 
 /// A triangle is shorter as it is than with words about whole numbers and compressed views; a sheet is not.

@@ -81,6 +81,7 @@ fn hostile_files_are_refused_or_read() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     let there = |kind: &str| std::fs::read_dir(folder.join("hostile").join(kind)).expect("a folder").count();
     assert_eq!(listed, there("obj") + there("stl") + there("png"), "every file of the folder is tried");
+    crate::counts::tried("hostile-files", listed);
 }
 
 /// Broken images and meshes of other people: never a panic, and a refusal says where.
@@ -108,4 +109,5 @@ fn broken_files_of_other_programs_are_refused_or_read() {
         }
     }
     assert!(tried >= 60, "{tried}");
+    crate::counts::tried("broken-files", tried);
 }

@@ -225,6 +225,7 @@ fn damaged_documents_are_refused_with_a_place_or_baked_whole() {
         faults.len(),
         faults[..faults.len().min(5)].join("\n\n")
     );
+    crate::counts::tried("damaged-documents", usize::try_from(rounds).expect("small"));
     let baked = (0..200).filter(|round| try_round(&seeds, *round).1.is_ok()).count();
     assert!((20..180).contains(&baked), "{baked} of 200 are baked: the damage is too small or too great");
 }

@@ -181,6 +181,7 @@ fn broken_files_are_refused_and_nothing_falls_over() {
         }
     }
     assert!(refused > 1000, "{refused}");
+    crate::counts::tried("damaged-packed-files", whole.len() + 3 * (whole.len() - 12));
 }
 
 #[test]

@@ -135,4 +135,5 @@ fn scenes_with_flipped_bits_are_baked_or_refused() {
         }
     }
     assert!(baked > 50 && refused > 20, "{baked} {refused}");
+    crate::counts::tried("damaged-scenes", baked + refused);
 }

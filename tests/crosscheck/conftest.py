@@ -9,12 +9,16 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 sys.path.insert(0, str(Path(__file__).parent))
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 from kiln import Kiln  # noqa: E402 -- after the path is set
 
@@ -63,6 +67,19 @@ def program() -> Path:
     if found is None:
         pytest.fail(f"kiln is not built: looked for {', '.join(map(str, candidates))}")
     return found.resolve()
+
+
+@pytest.fixture(scope="session")
+def tried() -> Callable[[str, int], None]:
+    """Keep how many of something a test tried, for the table of `scripts/trust.py`."""
+    named = os.environ.get("KILN_COUNTS")
+
+    def keep(what: str, count: int) -> None:
+        if named:
+            Path(named).mkdir(parents=True, exist_ok=True)
+            (Path(named) / what).write_text(f"{count}\n", encoding="utf-8")
+
+    return keep
 
 
 @pytest.fixture

@@ -61,7 +61,7 @@ def both(kiln: Kiln) -> list[dict[str, bytes]]:
 
 
 @pytest.mark.parametrize("number", range(len(SMALL)))
-def test_documents_cut_off_at_every_byte(kiln: Kiln, number: int) -> None:
+def test_documents_cut_off_at_every_byte(kiln: Kiln, number: int, tried: Callable[[str, int], None]) -> None:
     text = SMALL[number].encode()
     folder = kiln.folder / "specs"
     folder.mkdir()
@@ -71,12 +71,13 @@ def test_documents_cut_off_at_every_byte(kiln: Kiln, number: int) -> None:
     assert done.returncode == 1
     assert "panicked" not in done.stderr
     assert "failed inside" not in done.stderr
+    tried(f"cut-documents-{number}", len(text) + 1)
     whole = f"cut{len(text):04}.glb"
     assert (kiln.folder / "out" / whole).exists()
     assert all(path.read_bytes()[:4] == b"glTF" for path in (kiln.folder / "out").iterdir())
 
 
-def test_killed_at_any_moment(kiln: Kiln) -> None:
+def test_killed_at_any_moment(kiln: Kiln, tried: Callable[[str, int], None]) -> None:
     versions = both(kiln)
     out = kiln.folder / "out"
     shutil.copytree(kiln.folder / "right0", out)
@@ -96,6 +97,7 @@ def test_killed_at_any_moment(kiln: Kiln) -> None:
         for name, found in named(out).items():
             assert found in [version[name] for version in versions], f"{name} is broken after turn {turn}"
     assert min(ended.values()) > 20, ended
+    tried("bakes-to-kill", sum(ended.values()))
     kiln.write(sphere(1.5))
     assert kiln.run("bake", "model.toml", "--out", "out").returncode == 0
     assert named(out) == versions[1]
@@ -167,7 +169,7 @@ def test_a_folder_that_may_not_be_written(kiln: Kiln) -> None:
     assert list(out.iterdir()) == []
 
 
-def test_a_document_that_changes_while_it_is_baked(kiln: Kiln) -> None:
+def test_a_document_that_changes_while_it_is_baked(kiln: Kiln, tried: Callable[[str, int], None]) -> None:
     versions = both(kiln)
     stop = threading.Event()
 
@@ -191,6 +193,7 @@ def test_a_document_that_changes_while_it_is_baked(kiln: Kiln) -> None:
     finally:
         stop.set()
         changer.join()
+    tried("changing-documents", 40)
 
 
 def test_an_output_folder_that_vanishes(kiln: Kiln) -> None:

@@ -11,6 +11,7 @@ import random_documents
 from checks import compare, written
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from kiln import Kiln
@@ -23,7 +24,7 @@ def digests(folder: Path) -> dict[str, str]:
     return {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(folder.iterdir())}
 
 
-def test_random_documents_are_refused_or_right(kiln: Kiln) -> None:
+def test_random_documents_are_refused_or_right(kiln: Kiln, tried: Callable[[str, int], None]) -> None:
     random_documents.write(kiln.folder / "specs", COUNT, SEED)
     done = kiln.run("bake", "specs", "--out", "out", "--format", "json", seconds=600)
     said = [json.loads(line) for line in done.stdout.splitlines()]
@@ -34,6 +35,7 @@ def test_random_documents_are_refused_or_right(kiln: Kiln) -> None:
     assert [error for error in errors if not error.get("code")] == []
     assert all(error["message"] and "NaN" not in error["message"] for error in errors)
     baked = sorted((kiln.folder / "out").glob("*.glb"))
+    tried("random-documents", COUNT)
     assert len(baked) >= COUNT // 8, "too few of them are sound for this to mean much"
     wrong = []
     for path in baked:

@@ -57,6 +57,8 @@ pub(crate) fn check_folder(folder: &str, least: usize, run: impl Fn(&Case, Memor
     }
     assert!(wrong.is_empty(), "\n{wrong}");
     assert!(count >= least, "only {count} cases were found");
+    let whose = folder.parent().and_then(|folder| folder.file_name()).unwrap_or_default().to_string_lossy();
+    crate::counts::tried(&format!("cases-of-{whose}"), count);
 }
 
 fn read(text: &str) -> Vec<Case> {
