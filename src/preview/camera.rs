@@ -395,6 +395,7 @@ mod tests {
             triangles: vec![[0, 2, 1], [0, 3, 2]],
             lines: Vec::new(),
             pieces: Vec::new(),
+            materials: Vec::new(),
             bounds: Bounds::of_points([]),
             heat: None,
             eyes: Vec::new(),

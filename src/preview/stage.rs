@@ -6,7 +6,7 @@
 use glam::{DMat3, DMat4, DVec3};
 use thiserror::Error;
 
-use super::asset::{Asset, Lens, Material, Part, changed};
+use super::asset::{Asset, Lens, Material, Part, changed, see};
 use super::heat::HeatMap;
 use crate::geometry::number::Bounds;
 
@@ -115,6 +115,7 @@ impl Stage {
                     clips: asset.clips.iter().map(|clip| clip.name.clone()).collect(),
                 })?;
             clip.apply(moment.time, &mut nodes);
+            see(clip, moment.time, &mut nodes);
             materials = Some(changed(asset, clip, moment.time));
         }
         let mut worlds = vec![DMat4::IDENTITY; nodes.len()];
@@ -137,7 +138,7 @@ impl Stage {
             eyes: Vec::new(),
         };
         for node in order {
-            if let Some(lens) = nodes[node].lens {
+            if let Some((_, lens)) = nodes[node].camera {
                 let name = nodes[node].name.clone();
                 stage.eyes.push(Eye { name, world: worlds[node], lens });
             }

@@ -76,7 +76,9 @@ fn creases_of_a_file_are_those_of_the_document() {
                 f 6 9 8 7\nf 2 3 4 5\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 9 5\nf 5 9 6 2\n";
     let tags = "t crease 5/4/0 1 2 3 4 1 2.5 2.5 2.5 2.5\nt crease 2/1/0 5 6 10\nt corner 1/1/0 7 1.5\n\
                 t crease 2/1/0 0 1 4\nt interpolateboundary 1/0/0 2\nt crease 2/1/0 oops\n";
-    let spec = |extra: &str| format!("[shape.a.subdivide]\ncage = {{ import = {{ file = \"cube.obj\" }} }}\nlevels = 3\n{extra}");
+    let spec = |extra: &str| {
+        format!("[shape.a.subdivide]\ncage = {{ import = {{ file = \"cube.obj\" }} }}\nlevels = 3\n{extra}")
+    };
     let bake = |obj: &str, extra: &str| {
         let files = MemoryFiles::new().with("spec.toml", spec(extra)).with("cube.obj", obj);
         let document = Document::load("spec.toml", &files).unwrap_or_else(|found| panic!("{found}"));

@@ -45,8 +45,8 @@ pub struct Node {
     pub weights: Vec<f64>,
     /// Nodes that stand for it at coarser levels of detail (`MSFT_lod`).
     pub levels: Vec<usize>,
-    /// The camera at it, which looks along its -z with y up.
-    pub lens: Option<Lens>,
+    /// The camera at it, which looks along its -z with y up: its number in the file, and how it sees.
+    pub camera: Option<(usize, Lens)>,
 }
 
 /// How a camera sees.
@@ -406,7 +406,7 @@ fn node(own: &gltf::Node<'_>) -> Node {
         skin: own.skin().map(|skin| skin.index()),
         weights: own.weights().unwrap_or_default().iter().map(|weight| f64::from(*weight)).collect(),
         levels: levels(own),
-        lens: own.camera().map(|camera| lens(&camera)),
+        camera: own.camera().map(|camera| (camera.index(), lens(&camera))),
     }
 }
 

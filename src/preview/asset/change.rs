@@ -1,8 +1,8 @@
-//! Materials at a moment of a clip that changes them (`KHR_animation_pointer`).
+//! Materials and cameras at a moment of a clip that changes them (`KHR_animation_pointer`).
 
 use std::collections::BTreeSet;
 
-use super::{Asset, Clip, Cutoff, Material};
+use super::{Asset, Clip, Cutoff, Lens, Material, Node};
 use crate::geometry::number::single;
 
 /// The materials at a time of a clip, in seconds.
@@ -19,6 +19,28 @@ pub(in crate::preview) fn changed(asset: &Asset, clip: &Clip, time: f64) -> Vec<
     materials
 }
 
+/// The cameras of nodes at a time of a clip, in seconds.
+pub(in crate::preview) fn see(clip: &Clip, time: f64, nodes: &mut [Node]) {
+    for channel in &clip.properties {
+        let place = channel.pointer.strip_prefix("/cameras/").and_then(|place| place.split_once('/'));
+        let Some((number, part)) = place else { continue };
+        let Ok(number) = number.parse::<usize>() else { continue };
+        let Some(&value) = channel.at(time).first() else { continue };
+        let own = nodes.iter_mut().filter_map(|node| node.camera.as_mut());
+        for (_, lens) in own.filter(|(camera, _): &&mut (usize, Lens)| *camera == number) {
+            match (lens, part) {
+                (Lens::Perspective { upright, .. }, "perspective/yfov") => *upright = value,
+                (Lens::Perspective { near, .. }, "perspective/znear")
+                | (Lens::Orthographic { near, .. }, "orthographic/znear") => *near = value,
+                (Lens::Perspective { far, .. }, "perspective/zfar") => *far = Some(value),
+                (Lens::Orthographic { far, .. }, "orthographic/zfar") => *far = value,
+                (Lens::Orthographic { half, .. }, "orthographic/ymag") => *half = value,
+                _ => {}
+            }
+        }
+    }
+}
+
 /// What the file changes and no drawing shows, each once.
 pub(super) fn untold(asset: &Asset) -> Vec<String> {
     let all = asset.clips.iter().flat_map(|clip| &clip.properties);
@@ -28,7 +50,7 @@ pub(super) fn untold(asset: &Asset) -> Vec<String> {
             let mut own = asset.materials.get(material)?.clone();
             put(&mut own, part, &numbers)
         });
-        // Lights and cameras of a file are not drawn in any case.
+        // Lights of a file are not drawn in any case; cameras are looked through.
         let unseen = ["/cameras/", "/extensions/KHR_lights_punctual/"];
         known.is_none() && !unseen.iter().any(|place| channel.pointer.starts_with(place))
     });

@@ -11,7 +11,7 @@ mod texture;
 
 use glam::{DAffine2, DMat2, DVec2};
 
-pub(super) use change::changed;
+pub(super) use change::{changed, see};
 pub use texture::{Texture, Wrap};
 
 use crate::geometry::number::{floor_count, sin_cos, single};
