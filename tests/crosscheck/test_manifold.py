@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from test_verify import VERIFY
 
 from checks.document import Document
 
@@ -104,3 +107,14 @@ def test_what_the_profile_says_is_the_core_file_otherwise(kiln: Kiln) -> None:
     one, other = Document(path).meshes[0], core.document.meshes[0]
     assert (one.positions == other.positions).all()
     assert (one.triangles == other.triangles).all()
+
+
+def test_every_tool_confirms_it(kiln: Kiln) -> None:
+    for name, text in SHAPES.items():
+        # The validator tells of texture coordinates without a texture.
+        baked(kiln, text.replace('uv = "always"\n', "")).rename(kiln.folder / "out" / f"{name.replace(' ', '-')}.glb")
+        report = kiln.folder / "out" / "model.verify.report.json"
+        report.rename(report.with_name(f"{name.replace(' ', '-')}.report.json"))
+    line = [sys.executable, str(VERIFY), str(kiln.folder / "out")]
+    done = subprocess.run(line, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
