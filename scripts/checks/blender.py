@@ -32,7 +32,7 @@ def measure(path: Path) -> finding.Measured:
     meshes = {item.data.name: item.data for item in shown}
     totals = {
         "meshes": len(meshes),
-        "nodes": count_nodes(set(document.worlds)) - len(document.carriers),
+        "nodes": count_nodes(document.above_joints) - len(document.carriers),
         "materials": sum(not own.name.startswith(STAND_IN) for own in bpy.data.materials),
         "images": len(bpy.data.images),
         "bounds": box(
@@ -52,11 +52,11 @@ def measure(path: Path) -> finding.Measured:
     return finding.Measured(TOOL, bpy.app.version_string, str(path), totals, shapes, nodes, clips)
 
 
-def count_nodes(named: set[str]) -> int:
+def count_nodes(above: set[str]) -> int:
     """Objects and bones; the importer makes an armature for each skeleton: of the node above it, else of none."""
     objects = bpy.context.scene.objects
     bones = sum(len(item.data.bones) for item in objects if item.type == "ARMATURE")
-    return sum(item.type != "ARMATURE" or item.name in named for item in objects) + bones
+    return sum(item.type != "ARMATURE" or item.name in above for item in objects) + bones
 
 
 def open_still(path: Path) -> None:

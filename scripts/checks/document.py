@@ -232,6 +232,14 @@ class Document:
         return next((own for one, own in self.placed if above and one is above[0]), world)
 
     @property
+    def above_joints(self) -> set[str]:
+        """The names of nodes that are no joints and carry some."""
+        joints = {joint for skin in self.json.get("skins", []) for joint in skin["joints"]}
+        nodes = enumerate(self.json.get("nodes", []))
+        above = [node for index, node in nodes if index not in joints and joints & set(node.get("children", []))]
+        return {node.get("name", "") for node in above}
+
+    @property
     def worlds(self) -> dict[str, NDArray[np.float64]]:
         """World matrices by node name."""
         return {node["name"]: world for node, world in self.placed if "name" in node}
