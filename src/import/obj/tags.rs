@@ -47,7 +47,7 @@ mod tests {
     use super::{Tag, tag};
 
     fn read(text: &str) -> Option<Tag> {
-        tag(text.split(' ').map(str::as_bytes))
+        tag(text.split_whitespace().map(str::as_bytes))
     }
 
     #[test]

@@ -3,13 +3,12 @@
 use core::f64::consts::PI;
 
 use glam::DVec3;
-use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 use super::{FieldSurface, field_surface};
 use crate::geometry::field::{AnyField, Blend, Element, Form, Join, Joined, Potential, Primitive, Skeleton};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::mesh::crossing::crossings;
-use crate::geometry::number::{Bounds, count_of, floor_index};
+use crate::geometry::number::Bounds;
 use crate::geometry::tessellate::{Detail, SurfaceDensity, Tessellation};
 
 fn surface(field: AnyField, half: f64) -> FieldSurface {
@@ -122,39 +121,10 @@ fn sharp_edges_are_kept() {
     assert!((found.1 - (8.0 * 0.21 - PI * 0.09 * 1.2)).abs() < 2e-3, "{found:?}");
 }
 
-/// A skeleton of points, segments and triangles of all potentials, some of which dig into others.
-fn skeleton(seed: u32) -> AnyField {
-    let mut state = u64::from(seed).wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
-    let mut next = move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        f64::from(u32::try_from(state >> 33).expect("31 bits")) / f64::from(1_u32 << 31)
-    };
-    let count = 2 + floor_index(5.0 * next());
-    let elements = (0..count).map(|number| {
-        let mut place = || DVec3::new(next(), next(), next()) * 1.1 - 0.55;
-        let (a, b, c) = (place(), place(), place());
-        let form = match floor_index(3.0 * next()) {
-            0 => Form::Point(a),
-            1 => Form::Segment(a, b),
-            _ => Form::Triangles(vec![[a, b, c]]),
-        };
-        let radius = 0.25 + 0.2 * next();
-        let potential = match floor_index(5.0 * next()) {
-            0 => Potential::Gaussian { sharpness: 2.0 / (radius * radius) },
-            1 => Potential::Wyvill { radius },
-            exponent => Potential::Power { radius, exponent: count_of(exponent) - 1 },
-        };
-        let strength = if number > 0 && next() < 0.2 { -1.0 } else { 1.5 + next() };
-        Element { form, potential, strength }
-    });
-    AnyField::Skeleton(Box::new(Skeleton::new(elements.collect(), 0.6)))
-}
-
-/// Seeded skeletons, whose parts merge, touch and pierce: closed, within the tolerance, and no triangles cross.
+/// Seeded skeletons of seven balls, which merge, touch and pierce: none of their triangles cross.
 #[test]
 fn random_skeletons_are_sound() {
-    (0..1000_u32).into_par_iter().for_each(|seed| {
-        let shape = if seed % 4 == 0 { surface(balls(7, seed), 1.1) } else { surface(skeleton(seed), 1.3) };
-        check(&shape, 2e-2);
-    });
+    for seed in 0..40 {
+        check(&surface(balls(7, seed), 1.1), 1e-2);
+    }
 }
