@@ -34,7 +34,7 @@ error[K0101]: unknown field `rougness` of material
   | ^^^^^^^^ not a field of material
   |
   = note: fields of material: color, metallic, roughness, color-texture, metallic-roughness-texture, \
-normal-texture, normal-scale, occlusion-texture, occlusion-strength, emissive, emissive-texture, alpha, \
+roughness-texture, metallic-texture, normal-texture, normal-scale, occlusion-texture, occlusion-strength, emissive, emissive-texture, alpha, \
 alpha-cutoff, double-sided
 help: did you mean `roughness`?
   |
