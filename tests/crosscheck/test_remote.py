@@ -91,7 +91,7 @@ def server() -> Iterator[Server]:
     http = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
     http.daemon_threads = True
     threading.Thread(target=http.serve_forever, daemon=True).start()
-    state.url = f"http://127.0.0.1:{http.server_address[1]}/farm"
+    state.url = f"http://127.0.0.1:{http.server_address[1]}/bucket"
     yield state
     http.shutdown()
     http.server_close()
@@ -288,7 +288,7 @@ def test_what_is_no_address_is_told(kiln: Kiln) -> None:
 
 @pytest.fixture
 def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """An object store on loopback, with a bucket `farm` and one user."""
+    """An object store on loopback, with a bucket `bucket` and one user."""
     folder = tmp_path_factory.mktemp("store")
     with socket.create_server(("127.0.0.1", 0)) as probe:
         port = probe.getsockname()[1]
@@ -296,7 +296,7 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     if not program.is_file():
         pytest.fail("there is no s3rver: run scripts/setup")
     process = subprocess.Popen(
-        ["node", program, "-d", folder, "-a", "127.0.0.1", "-p", str(port), "--configure-bucket", "farm", "-s"],
+        ["node", program, "-d", folder, "-a", "127.0.0.1", "-p", str(port), "--configure-bucket", "bucket", "-s"],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )
@@ -324,19 +324,23 @@ def test_an_object_store_is_a_shared_cache(kiln: Kiln, store: str, tmp_path: Pat
         "AWS_SECRET_ACCESS_KEY": "S3RVER",
         "AWS_REGION": "eu-central-1",
     }
-    arguments = ("--remote-cache", "s3://farm/kiln/one", "--remote-cache-write")
+    arguments = ("--remote-cache", "s3://bucket/kiln/one", "--remote-cache-write")
     found, warnings = bake(kiln, "one", *arguments, **environment)
     assert (found["hits"], warnings) == (0, [])
     # Keys from the file of the AWS tools.
-    (tmp_path / "keys").write_text("[farm]\naws_access_key_id = S3RVER\naws_secret_access_key = S3RVER\n")
-    of_file = {"AWS_ENDPOINT_URL": store, "AWS_SHARED_CREDENTIALS_FILE": str(tmp_path / "keys"), "AWS_PROFILE": "farm"}
+    (tmp_path / "keys").write_text("[bucket]\naws_access_key_id = S3RVER\naws_secret_access_key = S3RVER\n")
+    of_file = {
+        "AWS_ENDPOINT_URL": store,
+        "AWS_SHARED_CREDENTIALS_FILE": str(tmp_path / "keys"),
+        "AWS_PROFILE": "bucket",
+    }
     assert bake(kiln, "two", *arguments, **of_file) == ({"hits": COUNT, "found": 0, "kept": 0}, [])
     assert outputs(kiln.folder / "out") == right
     # Nobody is refused, and told without what he said.
     wrong = environment | {"AWS_ACCESS_KEY_ID": "nobody", "AWS_SECRET_ACCESS_KEY": "of-bad-news"}
     _, warnings = bake(kiln, "three", *arguments, **wrong)
     (warning,) = warnings
-    assert warning.startswith("the shared cache s3://farm/kiln/one is left alone: it refuses (status 403)")
+    assert warning.startswith("the shared cache s3://bucket/kiln/one is left alone: it refuses (status 403)")
     assert outputs(kiln.folder / "out") == right
 
 
@@ -358,20 +362,20 @@ def signature(method: str, url: str, host: str, secret: str) -> str:
 
 def test_addresses_of_a_store_are_signed(kiln: Kiln, server: Server) -> None:
     right = prepare(kiln)
-    endpoint = server.url.removesuffix("/farm")
+    endpoint = server.url.removesuffix("/bucket")
     environment = {"AWS_ENDPOINT_URL_S3": endpoint, "AWS_REGION": "eu-central-1", "AWS_ACCESS_KEY_ID": "someone"}
     environment["AWS_SECRET_ACCESS_KEY"] = "of-bad-news/+="
-    arguments = ("--remote-cache", "s3://farm/kiln", "--remote-cache-write")
+    arguments = ("--remote-cache", "s3://bucket/kiln", "--remote-cache-write")
     assert bake(kiln, "one", *arguments, **environment)[1] == []
     assert bake(kiln, "two", *arguments, **environment)[0]["hits"] == COUNT
     assert outputs(kiln.folder / "out") == right
     assert {method for method, _, _ in server.asked} == {"GET", "PUT"}
     for method, url, _ in server.asked:
-        assert url.startswith(("/farm/kiln/ac/", "/farm/kiln/cas/"))
+        assert url.startswith(("/bucket/kiln/ac/", "/bucket/kiln/cas/"))
         sent = url.split("X-Amz-Signature=")[1].split("&")[0]
         assert sent == signature(method, url, endpoint.removeprefix("http://"), "of-bad-news/+=")
     # Without keys nothing is signed: a store may be open to all.
     server.asked.clear()
     nobody = {"AWS_ENDPOINT_URL_S3": endpoint, "AWS_SHARED_CREDENTIALS_FILE": "/nowhere"}
-    assert bake(kiln, "three", "--remote-cache", "s3://farm/kiln", **nobody)[0]["hits"] == COUNT
+    assert bake(kiln, "three", "--remote-cache", "s3://bucket/kiln", **nobody)[0]["hits"] == COUNT
     assert all("?" not in url for _, url, _ in server.asked)
