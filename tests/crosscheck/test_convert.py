@@ -133,3 +133,21 @@ def test_refusals_write_nothing(kiln: Kiln) -> None:
         assert not (kiln.folder / "new.toml").exists()
     assert (kiln.folder / "there.toml").read_text(encoding="utf-8") == "mine"
     assert kiln.run("convert", "bird.obj", "-o", "there.toml", "--force").returncode == 0
+
+
+def test_colors_of_points_come_along(kiln: Kiln) -> None:
+    corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    head = "ply\nformat ascii 1.0\nelement vertex 8\n"
+    head += "".join(f"property float {axis}\n" for axis in "xyz")
+    head += "".join(f"property uchar {part}\n" for part in ("red", "green", "blue"))
+    head += "element face 6\nproperty list uchar int vertex_indices\nend_header\n"
+    rows = [f"{x} {y} {z} {255 * x} {255 * y} {255 * z}" for x, y, z in corners]
+    rows += [" ".join(map(str, (4, *face))) for face in faces]
+    (kiln.folder / "cube.ply").write_text(head + "\n".join(rows) + "\n", encoding="utf-8")
+    compare(kiln, "cube.ply", "cube")
+    document = tomllib.loads((kiln.folder / "cube.toml").read_text(encoding="utf-8"))
+    mesh = document["shape"]["m"]["mesh"]
+    # Red where x is 1, green where y is, blue where z is.
+    assert mesh["colors"] == mesh["points"]
+    assert [len(face) for face in mesh["faces"]] == [4] * 6

@@ -45,9 +45,9 @@ def weights(baked: Baked) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     (mesh,) = baked.document.meshes
     attributes = mesh.surfaces[0].attributes
     found = np.zeros((len(mesh.positions), 2))
-    for joints, shares in ((attributes["JOINTS_0"], attributes["WEIGHTS_0"]),):
-        for column in range(4):
-            np.add.at(found, (np.arange(len(found)), joints[:, column].astype(int)), shares[:, column] / 255.0)
+    joints, shares = attributes["JOINTS_0"].astype(int), attributes["WEIGHTS_0"] / 255.0
+    for column in range(4):
+        np.add.at(found, (np.arange(len(found)), joints[:, column]), shares[:, column])
     return mesh.positions, found
 
 
