@@ -27,6 +27,7 @@ mod motion;
 mod mutation;
 mod nets;
 mod operations;
+mod optics;
 mod parametric;
 mod patches;
 mod paths;

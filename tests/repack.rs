@@ -254,6 +254,83 @@ fn what_is_said_twice_is_said_once_and_names_stay() {
     assert_eq!(length("accessors"), 2, "positions and indices: {}", read.json["accessors"]);
 }
 
+/// `KHR_materials_volume`: a thickness is one in the units of the mesh, which are the steps of its grid.
+#[test]
+fn bodies_are_as_thick_as_before() {
+    let mut file = File::new();
+    let large: Vec<f32> = sheet(6, 0.0).into_iter().map(|number| number * 50.0).collect();
+    let (small, large) = (file.floats(&sheet(6, 0.0), 3), file.floats(&large, 3));
+    let volume = json!({ "KHR_materials_volume": { "thicknessFactor": 0.25, "attenuationDistance": 2 } });
+    file.push("materials", json!({ "name": "glass", "extensions": volume }));
+    for (name, positions, scale) in [("a", small, 1.0), ("b", large, 1.0), ("c", small, 50.0)] {
+        let primitives = json!([{ "attributes": { "POSITION": positions }, "material": 0 }]);
+        let (_, node) = file.shown(name, primitives);
+        file.json["nodes"][node]["scale"] = json!([scale, scale, scale]);
+    }
+    file.json["extensionsUsed"] = json!(["KHR_materials_volume"]);
+    let read = file.made(Profile::Three);
+    let (nodes, materials) = (&read.json["nodes"], &read.json["materials"]);
+    for top in 0..3 {
+        let carrier = &nodes[count(&nodes[top]["children"][0])];
+        let step = carrier["scale"][0].as_f64().expect("a step");
+        let worn = &read.json["meshes"][count(&carrier["mesh"])]["primitives"][0]["material"];
+        let volume = &materials[count(worn)]["extensions"]["KHR_materials_volume"];
+        let thick = volume["thicknessFactor"].as_f64().expect("a number") * step;
+        assert!((thick - 0.25).abs() < 1e-7, "node {top}: {thick}");
+        assert_eq!(volume["attenuationDistance"], 2);
+        assert_eq!(materials[count(worn)]["name"], "glass");
+    }
+    // Where the thickness moves, what wears it keeps its units.
+    let (times, values) = (file.floats(&[0.0, 1.0], 1), file.floats(&[0.25, 0.5], 1));
+    let pointer = "/materials/0/extensions/KHR_materials_volume/thicknessFactor";
+    let target =
+        json!({ "path": "pointer", "extensions": { "KHR_animation_pointer": { "pointer": pointer } } });
+    file.push(
+        "animations",
+        json!({ "samplers": [{ "input": times, "output": values }], "channels": [{ "sampler": 0, "target": target }] }),
+    );
+    file.json["extensionsUsed"] = json!(["KHR_materials_volume", "KHR_animation_pointer"]);
+    let read = file.made(Profile::Three);
+    assert_eq!(read.json["materials"].as_array().map(Vec::len), Some(1));
+    assert_eq!(read.json["materials"][0]["extensions"]["KHR_materials_volume"]["thicknessFactor"], 0.25);
+    assert!(read.json["nodes"].as_array().expect("nodes").iter().all(|node| node.get("children").is_none()));
+}
+
+/// Pictures of extensions of materials that are said twice, and materials that name coarser ones.
+#[test]
+fn pictures_and_materials_that_extensions_name_are_renamed() {
+    let mut file = File::new();
+    let positions = file.floats(&sheet(6, 0.0), 3);
+    for bytes in [b"\x89PNG first", b"\x89PNG first", b"\x89PNG other"] {
+        let picture = file.accessor(bytes, (5121, "SCALAR", bytes.len()));
+        let view = count(&file.json["accessors"][picture]["bufferView"]);
+        let image = file.push("images", json!({ "bufferView": view, "mimeType": "image/png" }));
+        file.push("textures", json!({ "source": image }));
+    }
+    let coat = |normal: usize| {
+        let coat =
+            json!({ "clearcoatFactor": 1, "clearcoatNormalTexture": { "index": normal, "scale": 0.5 } });
+        let sheen = json!({ "sheenColorTexture": { "index": 2, "texCoord": 1 } });
+        json!({ "KHR_materials_clearcoat": coat, "KHR_materials_sheen": sheen })
+    };
+    file.push("materials", json!({ "name": "a", "extensions": coat(0) }));
+    file.push("materials", json!({ "name": "a", "extensions": coat(1) }));
+    file.push("materials", json!({ "name": "far" }));
+    file.push("materials", json!({ "name": "b", "extensions": { "MSFT_lod": { "ids": [2] } } }));
+    for material in [1, 3] {
+        file.shown("m", json!([{ "attributes": { "POSITION": positions }, "material": material }]));
+    }
+    file.json["extensionsUsed"] = json!(["KHR_materials_clearcoat", "KHR_materials_sheen", "MSFT_lod"]);
+    let read = file.made(Profile::Web);
+    let materials = read.json["materials"].as_array().expect("a list");
+    assert_eq!(materials.len(), 3, "{materials:?}");
+    let own = &materials[0]["extensions"];
+    assert_eq!(own["KHR_materials_clearcoat"]["clearcoatNormalTexture"], json!({ "index": 0, "scale": 0.5 }));
+    assert_eq!(own["KHR_materials_sheen"]["sheenColorTexture"], json!({ "index": 1, "texCoord": 1 }));
+    assert_eq!(read.json["images"].as_array().map(Vec::len), Some(2));
+    assert_eq!(materials[2]["extensions"]["MSFT_lod"]["ids"], json!([1]));
+}
+
 #[test]
 fn neighbors_of_one_material_are_one_and_strips_become_lists() {
     let mut file = File::new();

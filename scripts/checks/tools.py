@@ -71,6 +71,7 @@ def as_shipped(file: Path, found: list[Measured]) -> None:
         if one.tool == "written" and one.error is None:
             one.totals |= {"bytes": len(data), "blake3": blake3(data).hexdigest()}
             one.totals["required-extensions"] = required_extensions(file)
+            one.totals["used-extensions"] = split(data)[0].get("extensionsUsed", [])
 
 
 def required_extensions(file: Path) -> list[str]:

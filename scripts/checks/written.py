@@ -37,6 +37,7 @@ def measure(path: Path) -> finding.Measured:
     totals["blake3"] = blake3(data).hexdigest()
     totals["bounds"] = world_bounds(document)
     totals["required-extensions"] = document.json.get("extensionsRequired", [])
+    totals["used-extensions"] = document.json.get("extensionsUsed", [])
     shapes = {mesh.name: shape(mesh) for mesh in document.meshes}
     nodes = {name: world.T.ravel().tolist() for name, world in document.worlds.items()}
     totals["weight-faults"] = played.weight_faults(document)

@@ -12,7 +12,7 @@ use crate::import::{self, ImportError, ImportOptions, Imported, MaterialLook, No
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::{FileError, Files, Span, join};
 use crate::language::spec::{FilePath, Import, MaterialName, Sp, Up};
-use crate::model::{AlphaMode, Material, MaterialHandle, Recipe};
+use crate::model::{AlphaMode, Material, MaterialHandle, Optics, Recipe};
 
 /// The rotation from a file's axes to a document's.
 pub(super) fn axes_between(file: Up, document: Up) -> DMat3 {
@@ -232,6 +232,7 @@ impl Builder<'_> {
             emissive_texture: None,
             alpha: if opacity < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque },
             double_sided: look.double_sided,
+            optics: Optics::default(),
         });
         Some(MaterialHandle(mesh::index(self.model.materials.len()) - 1))
     }

@@ -42,6 +42,7 @@ impl Builder<'_> {
             _ => self.texture(written.occlusion_texture.as_ref()),
         };
         let emissive = self.texture(written.emissive_texture.as_ref());
+        let optics = self.optics(written);
         let emitted = written.emissive.map(|color| color.value.linear);
         let without = if written.emissive_texture.is_some() { [1.0; 4] } else { [0.0; 4] };
         let [red, green, blue, _] = emitted.unwrap_or(without);
@@ -64,12 +65,13 @@ impl Builder<'_> {
                 Alpha::Blend => AlphaMode::Blend,
             },
             double_sided: written.double_sided.value,
+            optics: optics?,
         })
     }
 
     /// A texture where one is written; the outer `None` says that it failed.
     #[expect(clippy::option_option, reason = "absent and failed are different answers")]
-    fn texture(&mut self, written: Option<&Sp<spec::Texture>>) -> Option<Option<Texture>> {
+    pub(super) fn texture(&mut self, written: Option<&Sp<spec::Texture>>) -> Option<Option<Texture>> {
         let Some(written) = written else { return Some(None) };
         let image = self.image(&written.value)?;
         let (wrap, filter) = texture_way(&written.value);

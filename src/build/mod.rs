@@ -39,6 +39,7 @@ mod moving;
 mod node;
 mod normal_map;
 mod operation;
+mod optics;
 mod overlap;
 mod parametric;
 mod part;

@@ -9,8 +9,8 @@ use crate::geometry::mesh;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::spec::{Shape as Kind, ShapeDefinition};
 use crate::model::{
-    AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, NormalMap, ShapeHandle,
-    ShapeOptions, Texture, UvMode, Wrap,
+    AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, NormalMap, Optics,
+    ShapeHandle, ShapeOptions, Texture, UvMode, Wrap,
 };
 
 impl Builder<'_> {
@@ -77,6 +77,7 @@ impl Builder<'_> {
             emissive_texture: None,
             alpha: AlphaMode::Opaque,
             double_sided: false,
+            optics: Optics::default(),
         };
         let mut material = own.unwrap_or(plain);
         material.name = format!("{}-{name}", material.name);

@@ -9,7 +9,7 @@ use super::profile::show;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, LimitRule, MotionPath, Sp};
-use crate::model::{AlphaMode, Lens, MaterialHandle, Owner, PropertyTrack};
+use crate::model::{Lens, MaterialHandle, Owner, PropertyTrack};
 use crate::motion::{Course, Path, Property, Track};
 
 /// A number that leaves its range by rounding alone is in it.
@@ -116,23 +116,34 @@ impl Builder<'_> {
 
     fn of_material(&mut self, handle: MaterialHandle, path: &Sp<MotionPath>) -> Option<Property> {
         let material = self.model.material(handle);
+        let property = property_of(path.value);
+        if property.is_some_and(|property| material.value(property).is_some()) {
+            return property;
+        }
         let missing = match path.value {
-            MotionPath::Color | MotionPath::Alpha => return Some(Property::Color),
-            MotionPath::Emissive => return Some(Property::Emissive),
-            MotionPath::Metallic => return Some(Property::Metallic),
-            MotionPath::Roughness => return Some(Property::Roughness),
-            MotionPath::NormalScale if material.normal_texture.is_some() => {
-                return Some(Property::NormalScale);
-            }
-            MotionPath::OcclusionStrength if material.occlusion_texture.is_some() => {
-                return Some(Property::OcclusionStrength);
-            }
-            MotionPath::AlphaCutoff if matches!(material.alpha, AlphaMode::Mask { .. }) => {
-                return Some(Property::AlphaCutoff);
-            }
             MotionPath::NormalScale => "no `normal-texture`",
             MotionPath::OcclusionStrength => "no `occlusion-texture`",
             MotionPath::AlphaCutoff => "no `alpha = \"mask\"`",
+            MotionPath::EmissiveStrength | MotionPath::Ior | MotionPath::Dispersion => "none at rest",
+            MotionPath::ClearcoatNormalScale if material.optics.clearcoat.is_some() => {
+                "no `normal-texture` of its `clearcoat`"
+            }
+            MotionPath::Clearcoat | MotionPath::ClearcoatRoughness | MotionPath::ClearcoatNormalScale => {
+                "no `clearcoat`"
+            }
+            MotionPath::Transmission => "no `transmission`",
+            MotionPath::AttenuationDistance if material.optics.volume.is_some() => {
+                "no `attenuation-distance` at rest"
+            }
+            MotionPath::Thickness | MotionPath::AttenuationDistance | MotionPath::AttenuationColor => {
+                "no `volume`"
+            }
+            MotionPath::Specular | MotionPath::SpecularColor => "no `specular`",
+            MotionPath::SheenColor | MotionPath::SheenRoughness => "no `sheen`",
+            MotionPath::Iridescence | MotionPath::IridescenceIor | MotionPath::IridescenceThickness => {
+                "no `iridescence`"
+            }
+            MotionPath::Anisotropy | MotionPath::AnisotropyRotation => "no `anisotropy`",
             _ => "no light and no camera",
         };
         let message = format!("material `{}` has no `{}`", material.name, path.value.text());
@@ -230,6 +241,45 @@ impl Builder<'_> {
         self.report(report);
         None
     }
+}
+
+/// The property of materials that a path names.
+const fn property_of(path: MotionPath) -> Option<Property> {
+    Some(match path {
+        MotionPath::Color | MotionPath::Alpha => Property::Color,
+        MotionPath::Emissive => Property::Emissive,
+        MotionPath::Metallic => Property::Metallic,
+        MotionPath::Roughness => Property::Roughness,
+        MotionPath::NormalScale => Property::NormalScale,
+        MotionPath::OcclusionStrength => Property::OcclusionStrength,
+        MotionPath::AlphaCutoff => Property::AlphaCutoff,
+        MotionPath::EmissiveStrength => Property::EmissiveStrength,
+        MotionPath::Ior => Property::Ior,
+        MotionPath::Dispersion => Property::Dispersion,
+        MotionPath::Clearcoat => Property::Clearcoat,
+        MotionPath::ClearcoatRoughness => Property::ClearcoatRoughness,
+        MotionPath::ClearcoatNormalScale => Property::ClearcoatNormalScale,
+        MotionPath::Transmission => Property::Transmission,
+        MotionPath::Thickness => Property::Thickness,
+        MotionPath::AttenuationDistance => Property::AttenuationDistance,
+        MotionPath::AttenuationColor => Property::AttenuationColor,
+        MotionPath::Specular => Property::Specular,
+        MotionPath::SpecularColor => Property::SpecularColor,
+        MotionPath::SheenColor => Property::SheenColor,
+        MotionPath::SheenRoughness => Property::SheenRoughness,
+        MotionPath::Iridescence => Property::Iridescence,
+        MotionPath::IridescenceIor => Property::IridescenceIor,
+        MotionPath::IridescenceThickness => Property::IridescenceThickness,
+        MotionPath::Anisotropy => Property::Anisotropy,
+        MotionPath::AnisotropyRotation => Property::AnisotropyRotation,
+        MotionPath::Translation
+        | MotionPath::Rotation
+        | MotionPath::Scale
+        | MotionPath::Intensity
+        | MotionPath::Range
+        | MotionPath::FieldOfView
+        | MotionPath::Height => return None,
+    })
 }
 
 /// Whether a track is one of a property.

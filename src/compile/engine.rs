@@ -1,7 +1,8 @@
 //! What engines read of a file: the forms that a profile takes where the document does not say, and what is told where an
 //! engine cannot take what the document asks for.
 //!
-//! Sources: Godot Engine documentation, Node type customization using name suffixes, 4.5; the loaders' own sources, 2026.
+//! Sources: Godot Engine documentation, Node type customization using name suffixes, 4.5; Unity glTFast documentation,
+//! Features; Unreal Engine API, `GLTFCore`; the loaders' own sources, 2026.
 
 use crate::gltf::Profile;
 use crate::language::diagnostic::{Code, Diagnostic};
@@ -82,6 +83,7 @@ pub(super) fn unread(profile: Profile, spec: &Spec) -> Vec<Diagnostic> {
     }
     found.extend(unread_properties(profile, engine, spec));
     found.extend(unread_attributes((profile, engine), spec));
+    found.extend(unread_materials((profile, engine), spec));
     if profile == Profile::Godot {
         found.extend(changed_by_godot(spec));
     }
@@ -135,6 +137,37 @@ fn unread_attributes((profile, engine): (Profile, &str), spec: &Spec) -> Option<
         _ => return None,
     };
     Some(Diagnostic::warning(Code::EngineAttributes, message).at(span, "this attribute").help(help))
+}
+
+/// Extensions of materials, each with the engines whose loaders do not read it. Unity's reads a transmission as a thin one.
+const UNREAD_MATERIALS: [(&str, &[Profile]); 10] = [
+    ("KHR_materials_anisotropy", &[Profile::Godot, Profile::Unity]),
+    ("KHR_materials_clearcoat", &[Profile::Godot]),
+    (
+        "KHR_materials_dispersion",
+        &[Profile::Bevy, Profile::Godot, Profile::Unreal, Profile::Unity, Profile::Blender],
+    ),
+    ("KHR_materials_emissive_strength", &[Profile::Unity]),
+    ("KHR_materials_ior", &[Profile::Godot, Profile::Unity]),
+    ("KHR_materials_iridescence", &[Profile::Bevy, Profile::Godot, Profile::Unity, Profile::Blender]),
+    ("KHR_materials_sheen", &[Profile::Bevy, Profile::Godot, Profile::Unity]),
+    ("KHR_materials_specular", &[Profile::Godot, Profile::Unity]),
+    ("KHR_materials_transmission", &[Profile::Godot]),
+    ("KHR_materials_volume", &[Profile::Godot, Profile::Unreal, Profile::Unity]),
+];
+
+/// What of materials an engine does not draw, the first material of each extension.
+fn unread_materials((profile, engine): (Profile, &str), spec: &Spec) -> Option<Diagnostic> {
+    let used: Vec<_> = spec.materials.values().flat_map(|own| own.value.extensions()).collect();
+    let unread = UNREAD_MATERIALS.iter().filter(|(_, by)| by.contains(&profile));
+    let found: Vec<_> =
+        unread.filter_map(|(extension, _)| used.iter().find(|(_, own, _)| own == extension)).collect();
+    let (_, _, first) = found.first()?;
+    let keys: Vec<String> = found.iter().map(|(key, ..)| format!("`{key}`")).collect();
+    let message = format!("{engine} reads of these materials no {}", keys.join(", "));
+    let report = Diagnostic::warning(Code::EngineMaterials, message).at(*first, "left out there");
+    let report = found[1..].iter().fold(report, |report, (_, _, span)| report.also(*span, "and this"));
+    Some(report.help("it draws the rest of each material, which should look well alone"))
 }
 
 /// Ends of names by which Godot makes something else of a node.

@@ -79,7 +79,7 @@ fn own(node: &Node) -> DAffine3 {
 }
 
 impl Placement {
-    /// Puts a node above all others, and makes lights and cameras reach as far as it scales.
+    /// Puts a node above all others, and makes lights, cameras and what bodies take of light reach as far as it scales.
     pub(super) fn place(&self, scene: &mut Scene) {
         let root = scene.nodes.len();
         let skinned: Vec<bool> = scene.nodes.iter().map(|node| node.skin.is_some()).collect();
@@ -113,6 +113,11 @@ impl Placement {
             scale: DVec3::splat(self.scale),
         });
         scene.root = Some(root);
+        // A thickness is scaled by the nodes; the way in a body is one of the scene.
+        for material in &mut scene.materials {
+            let distance = material.optics.volume.as_mut().and_then(|own| own.attenuation_distance.as_mut());
+            distance.into_iter().for_each(|distance| *distance *= self.scale);
+        }
         for animation in &mut scene.animations {
             animation.reach = animation.reach.map(|reach| self.box_of(reach));
             animation.bound *= self.scale;
@@ -136,10 +141,12 @@ impl Placement {
 
 /// What changes how far lights and cameras reach.
 fn scale_channel(channel: &mut PropertyChannel, nodes: &[Node], scale: f64) {
-    let Owner::Node(node) = channel.owner else { return };
-    let sun = nodes[node].light.is_some_and(|light| light.kind == LightKind::Sun);
+    let sun = match channel.owner {
+        Owner::Node(node) => nodes[node].light.is_some_and(|light| light.kind == LightKind::Sun),
+        Owner::Material(_) => false,
+    };
     let factor = match channel.property {
-        Property::Range | Property::Height => scale,
+        Property::AttenuationDistance | Property::Range | Property::Height => scale,
         Property::Intensity if !sun => scale * scale,
         _ => return,
     };

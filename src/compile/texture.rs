@@ -7,7 +7,7 @@ use crate::gltf::Profile;
 use crate::import::image::{Edge, ImageError, Meaning, Wish, fitted};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::spec::Spec;
-use crate::scene::{ImageKind, Scene, Texture, Wrap};
+use crate::scene::{ImageKind, Scene, Texture, TextureUse, Wrap};
 
 /// Makes the pictures of a scene as small as a document asks for in the files of a profile.
 ///
@@ -48,11 +48,16 @@ fn uses(scene: &Scene) -> Vec<(Meaning, [Edge; 2])> {
         *known = (if stays { known.0 } else { meaning }, [edge; 2]);
     };
     for material in &scene.materials {
-        let colors = [&material.color_texture, &material.emissive_texture];
-        colors.into_iter().flatten().for_each(|texture| note(texture, Meaning::Color));
-        material.normal_texture.iter().for_each(|(texture, _)| note(texture, Meaning::Normal));
-        material.metallic_roughness_texture.iter().for_each(|texture| note(texture, Meaning::Data));
-        material.occlusion_texture.iter().for_each(|(texture, _)| note(texture, Meaning::Data));
+        for (texture, own) in material.textures() {
+            note(
+                texture,
+                match own {
+                    TextureUse::Color => Meaning::Color,
+                    TextureUse::Normal => Meaning::Normal,
+                    TextureUse::Data => Meaning::Data,
+                },
+            );
+        }
     }
     uses
 }

@@ -10,6 +10,7 @@ use gltf::json::validation::Checked;
 use gltf::json::{Index, Root};
 
 use super::buffer::{Binary, Content};
+use super::optics;
 use crate::geometry::mesh;
 use crate::geometry::number::single;
 use crate::scene::{AlphaMode, Filter, ImageHandle, ImageKind, Material, Scene, Texture, Wrap};
@@ -47,14 +48,16 @@ pub(super) fn images(root: &mut Root, binary: &mut Binary, scene: &Scene) -> Vec
 /// Writes the materials; index k of the scene is index k of the file.
 pub(super) fn materials(root: &mut Root, scene: &Scene, images: &[u32]) {
     let mut textures = Textures { images, seen: Vec::new(), samplers: Vec::new() };
-    for material in &scene.materials {
+    for (index, material) in scene.materials.iter().enumerate() {
         let written = textures.material(root, material);
-        root.push(written);
+        let extensions = optics::extensions(&mut textures, root, (scene, index));
+        root.push(JsonMaterial { extensions, ..written });
     }
+    optics::name_used(root);
 }
 
 /// Textures and samplers written so far: equal ones are written once.
-struct Textures<'a> {
+pub(super) struct Textures<'a> {
     /// For each image of the scene that of the file.
     images: &'a [u32],
     seen: Vec<Texture>,
@@ -115,7 +118,7 @@ impl Textures<'_> {
         })
     }
 
-    fn texture(&mut self, root: &mut Root, texture: Texture) -> Index<JsonTexture> {
+    pub(super) fn texture(&mut self, root: &mut Root, texture: Texture) -> Index<JsonTexture> {
         let texture = Texture { image: ImageHandle(self.images[texture.image.0 as usize]), ..texture };
         if let Some(known) = self.seen.iter().position(|seen| *seen == texture) {
             return Index::new(mesh::index(known));

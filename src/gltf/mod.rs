@@ -16,6 +16,7 @@ mod manifold;
 mod material;
 mod morph;
 mod motion;
+mod optics;
 mod pointer;
 mod position;
 mod profile;

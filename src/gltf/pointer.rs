@@ -10,6 +10,7 @@ use gltf::json::{Animation, Index, Root};
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use super::optics;
 use crate::motion::Property;
 use crate::packing::POINTER;
 use crate::scene::{Node, Owner, PropertyChannel, Scene};
@@ -35,6 +36,11 @@ pub(super) fn targets(scene: &Scene, channel: &PropertyChannel) -> Vec<(String, 
         || format!("/extensions/{}/lights/{}", super::view::LIGHTS, before(|node| node.light.is_some()));
     let camera = || format!("/cameras/{}", before(|node| node.camera.is_some()));
     let one = |path: String| vec![(path, 1.0)];
+    if let (Some((key, factor)), Owner::Material(index)) = (optics::place(channel.property), channel.owner) {
+        let of_meshes = channel.property == Property::Thickness;
+        let unit = if of_meshes { optics::thickness_unit(scene, index) } else { 1.0 };
+        return vec![(format!("{material}/extensions/{key}"), factor * unit)];
+    }
     match channel.property {
         Property::Color => one(format!("{material}/pbrMetallicRoughness/baseColorFactor")),
         Property::Metallic => one(format!("{material}/pbrMetallicRoughness/metallicFactor")),
@@ -52,6 +58,8 @@ pub(super) fn targets(scene: &Scene, channel: &PropertyChannel) -> Vec<(String, 
             let lens = format!("{}/orthographic", camera());
             vec![(format!("{lens}/xmag"), aspect / 2.0), (format!("{lens}/ymag"), 0.5)]
         }
+        // Those stand in extensions of materials.
+        _ => Vec::new(),
     }
 }
 

@@ -329,7 +329,7 @@ impl Writer {
         };
         let primitive = |shared: &Shared, material: Option<usize>, indices: Index<Accessor>| {
             let worn = material.map(|index| &scene.materials[index]);
-            let bumps = worn.is_some_and(|material| material.normal_texture.is_some());
+            let bumps = worn.is_some_and(crate::scene::Material::needs_tangents);
             let mut attributes = BTreeMap::new();
             attributes.insert(Valid::Valid(Semantic::Positions), shared.position);
             attributes.insert(Valid::Valid(Semantic::Normals), shared.normal);

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use super::optics::Optics;
+
 /// Index of a material in its model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct MaterialHandle(pub u32);
@@ -37,18 +39,8 @@ pub struct Material {
     pub alpha: AlphaMode,
     /// Whether the back is seen.
     pub double_sided: bool,
-}
-
-impl Material {
-    /// Whether any texture needs texture coordinates.
-    #[must_use]
-    pub fn has_texture(&self) -> bool {
-        self.color_texture.is_some()
-            || self.metallic_roughness_texture.is_some()
-            || self.normal_texture.is_some()
-            || self.occlusion_texture.is_some()
-            || self.emissive_texture.is_some()
-    }
+    /// What light does there beyond that.
+    pub optics: Optics,
 }
 
 /// What alpha does.
@@ -74,6 +66,17 @@ pub struct Texture {
     pub wrap: Wrap,
     /// Between the pixels.
     pub filter: Filter,
+}
+
+/// What the numbers of a texture are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TextureUse {
+    /// A color, as screens show it.
+    Color,
+    /// Normals.
+    Normal,
+    /// Numbers of other kinds.
+    Data,
 }
 
 /// What lies beyond the borders of an image.

@@ -10,6 +10,7 @@ mod deform;
 mod displace;
 mod material;
 mod motion;
+mod optics;
 mod shape;
 mod solid;
 mod subdivide;
@@ -22,12 +23,13 @@ pub use deform::{AxialBending, Bending, PathBending};
 pub use displace::{Displacement, Heights, Projection};
 pub use material::NormalMap;
 pub use material::{
-    AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, Texture, Wrap,
+    AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, Texture, TextureUse, Wrap,
 };
 pub use motion::{
     Clip, ClipTrack, Driver, Morph, NamedSkeleton, Owner, PropertyTrack, ReachTask, Skin, Socket,
     SocketHandle, Space, State, Target, WeightRule,
 };
+pub use optics::{Anisotropy, Clearcoat, Iridescence, Optics, Sheen, Specular, Transmission, Volume};
 pub use shape::{
     Density, LightmapOptions, Occlusion, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode,
 };

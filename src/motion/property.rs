@@ -27,6 +27,44 @@ pub enum Property {
     OcclusionStrength,
     /// Opacity below which nothing is there.
     AlphaCutoff,
+    /// What the light that a material gives off is multiplied by.
+    EmissiveStrength,
+    /// Index of refraction.
+    Ior,
+    /// How much more a body bends blue than red.
+    Dispersion,
+    /// Share of a coat.
+    Clearcoat,
+    /// How rough a coat is.
+    ClearcoatRoughness,
+    /// Strength of a coat's normal texture.
+    ClearcoatNormalScale,
+    /// Share of light that goes through.
+    Transmission,
+    /// How thick a body is, metres.
+    Thickness,
+    /// After how long a way light has the color of a body, metres.
+    AttenuationDistance,
+    /// That color: linear red, green, blue.
+    AttenuationColor,
+    /// How much is reflected by no metal.
+    Specular,
+    /// Its color: linear red, green, blue.
+    SpecularColor,
+    /// Color of fibers: linear red, green, blue.
+    SheenColor,
+    /// How rough fibers are.
+    SheenRoughness,
+    /// Share of a film.
+    Iridescence,
+    /// Index of refraction of a film.
+    IridescenceIor,
+    /// How thick a film is, nanometres.
+    IridescenceThickness,
+    /// How much shine is drawn out.
+    Anisotropy,
+    /// Along which direction, degrees.
+    AnisotropyRotation,
     /// Color of a light: linear red, green, blue.
     LightColor,
     /// Strength of a light, candela or lux.
@@ -58,7 +96,7 @@ impl Property {
     pub const fn width(self) -> usize {
         match self {
             Self::Color => 4,
-            Self::Emissive | Self::LightColor => 3,
+            color if color.is_color() => 3,
             _ => 1,
         }
     }
@@ -66,18 +104,35 @@ impl Property {
     /// Whether it is a color.
     #[must_use]
     pub const fn is_color(self) -> bool {
-        matches!(self, Self::Color | Self::Emissive | Self::LightColor)
+        matches!(
+            self,
+            Self::Color
+                | Self::Emissive
+                | Self::AttenuationColor
+                | Self::SpecularColor
+                | Self::SheenColor
+                | Self::LightColor
+        )
+    }
+
+    /// Whether it is a length, metres.
+    #[must_use]
+    pub const fn is_length(self) -> bool {
+        matches!(self, Self::Thickness | Self::AttenuationDistance | Self::Range | Self::Height)
     }
 
     /// The least and the greatest number that it may have.
     #[must_use]
     pub const fn range(self) -> (f64, f64) {
         match self {
-            Self::NormalScale => (-1e6, 1e6),
-            Self::Intensity => (0.0, 1e12),
+            Self::NormalScale | Self::ClearcoatNormalScale | Self::AnisotropyRotation => (-1e6, 1e6),
+            Self::Intensity | Self::Thickness => (0.0, 1e12),
+            Self::EmissiveStrength | Self::IridescenceThickness => (0.0, 1e6),
+            Self::Ior | Self::IridescenceIor => (1.0, 100.0),
+            Self::Dispersion => (0.0, 1000.0),
             Self::FieldOfView => (0.001, 179.0),
             // Nothing is seen by what has no height.
-            Self::Range | Self::Height => (1e-6, 1e12),
+            Self::AttenuationDistance | Self::Range | Self::Height => (1e-6, 1e12),
             _ => (0.0, 1.0),
         }
     }
@@ -85,9 +140,9 @@ impl Property {
     /// How far a value may be from the exact one, where the greatest of all is known.
     fn tolerance(self, greatest: f64) -> f64 {
         match self {
-            Self::FieldOfView => 0.01,
-            Self::NormalScale | Self::Intensity | Self::Range | Self::Height => greatest / 1000.0,
-            _ => 0.5 / 255.0,
+            Self::FieldOfView | Self::AnisotropyRotation => 0.01,
+            _ if self.range() == (0.0, 1.0) => 0.5 / 255.0,
+            _ => greatest / 1000.0,
         }
     }
 

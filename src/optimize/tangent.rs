@@ -1,4 +1,4 @@
-//! MikkTSpace tangents, where and only where a normal texture is shown.
+//! MikkTSpace tangents, where and only where a material is drawn in their frame: by a normal texture, or shine along a direction.
 //!
 //! Vertices whose corners have different tangents are split.
 
@@ -11,13 +11,12 @@ use crate::geometry::mesh::{Mesh, Vertex, VertexIndex};
 use crate::packing;
 use crate::scene::{Geometry, MorphTarget, Scene};
 
-/// Gives tangents to every geometry that is shown with a normal texture.
+/// Gives tangents to every geometry that is shown with a material that needs them.
 pub(super) fn tangents(scene: &mut Scene) {
     for index in 0..scene.geometries.len() {
         let shown = scene.meshes.iter().filter(|mesh| mesh.geometry == index);
         let materials = shown.flat_map(|mesh| mesh.materials.iter().flatten());
-        let needed =
-            materials.into_iter().any(|material| scene.materials[*material].normal_texture.is_some());
+        let needed = materials.into_iter().any(|material| scene.materials[*material].needs_tangents());
         let geometry = &mut scene.geometries[index];
         if needed && geometry.uv && !geometry.mesh.triangles.is_empty() {
             add_tangents(geometry);

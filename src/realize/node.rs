@@ -166,19 +166,7 @@ fn keep_used_images(model: &Model, scene: &mut Scene) {
         image.0 = mesh::index(place);
     };
     for material in &mut scene.materials {
-        let plain = [
-            &mut material.color_texture,
-            &mut material.metallic_roughness_texture,
-            &mut material.emissive_texture,
-        ];
-        for texture in plain.into_iter().flatten() {
-            keep(&mut texture.image);
-        }
-        for (texture, _) in
-            [&mut material.normal_texture, &mut material.occlusion_texture].into_iter().flatten()
-        {
-            keep(&mut texture.image);
-        }
+        material.textures_mut().for_each(|(texture, _)| keep(&mut texture.image));
     }
     scene.images = kept.iter().map(|image| model.images[*image as usize].clone()).collect();
 }

@@ -19,10 +19,7 @@ pub(super) fn channels(
         model::Owner::Node(node) => vec![Owner::Node(*node)],
     };
     let playing = Track::new(&track.course);
-    let unit = match track.property {
-        Property::Range | Property::Height => model.frame.unit,
-        _ => 1.0,
-    };
+    let unit = if track.property.is_length() { model.frame.unit } else { 1.0 };
     let channel = |owner: Owner| {
         let rest = at_rest(scene, owner, track.property);
         let exact = |time: f64| track.composed(rest, playing.at(time)) * unit;
@@ -66,16 +63,7 @@ pub(super) fn last_to_the_end(channels: &mut [PropertyChannel], end: f64) {
 fn at_rest(scene: &Scene, owner: Owner, property: Property) -> DVec4 {
     let rgb = |[red, green, blue]: [f64; 3]| DVec4::new(red, green, blue, 0.0);
     match owner {
-        Owner::Material(material) => {
-            let material = &scene.materials[material];
-            match property {
-                Property::Color => DVec4::from_array(material.color),
-                Property::Emissive => rgb(material.emissive),
-                Property::Metallic => DVec4::X * material.metallic,
-                Property::Roughness => DVec4::X * material.roughness,
-                _ => DVec4::ZERO,
-            }
-        }
+        Owner::Material(material) => scene.materials[material].value(property).unwrap_or_default(),
         Owner::Node(node) => {
             let node = &scene.nodes[node];
             match (property, &node.light, node.camera.map(|camera| camera.lens)) {

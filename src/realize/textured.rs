@@ -12,7 +12,7 @@ pub(super) fn wants_uv(model: &Model, handle: ShapeHandle, overrides: &[Option<M
         _ if model.attributes.iter().any(|own| own.shape == handle && own.wants_uv) => true,
         UvMode::None => false,
         UvMode::Auto => {
-            let textured = |material: &MaterialHandle| model.material(*material).has_texture();
+            let textured = |material: &MaterialHandle| model.material(*material).needs_uv();
             overrides.iter().flatten().any(textured) || shows_texture(model, handle)
         }
     }
@@ -21,7 +21,7 @@ pub(super) fn wants_uv(model: &Model, handle: ShapeHandle, overrides: &[Option<M
 /// Whether a material with a texture is on the shape or a part of it. Shapes come after their parts, so one
 /// pass over those before it is enough however often parts share parts.
 fn shows_texture(model: &Model, handle: ShapeHandle) -> bool {
-    let textured = |material: &MaterialHandle| model.material(*material).has_texture();
+    let textured = |material: &MaterialHandle| model.material(*material).needs_uv();
     let mut shows: Vec<bool> = Vec::with_capacity(handle.0 as usize + 1);
     for shape in &model.shapes[..=handle.0 as usize] {
         let of_parts = match &shape.recipe {

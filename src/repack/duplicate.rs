@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::document::{Object, as_index, list, list_mut};
 use super::pin::{Pins, is_known};
+use super::thickness::worn;
 
 /// Merges what is equal, from what is referred to up to what refers. Linear in the JSON.
 pub(super) fn merge(made: &mut Object, pins: &Pins) {
@@ -30,14 +31,13 @@ pub(super) fn merge(made: &mut Object, pins: &Pins) {
     let places = unique(made, "materials", pins);
     for mesh in list_mut(made, "meshes") {
         for primitive in mesh.get_mut("primitives").and_then(Value::as_array_mut).into_iter().flatten() {
-            rename(primitive.get_mut("material"), &places);
-            let variants =
-                primitive.get_mut("extensions").and_then(|own| own.get_mut("KHR_materials_variants"));
-            let mappings = variants.and_then(|own| own.get_mut("mappings")?.as_array_mut());
-            for mapping in mappings.into_iter().flatten() {
-                rename(mapping.get_mut("material"), &places);
-            }
+            worn(primitive).into_iter().for_each(|material| rename(Some(material), &places));
         }
+    }
+    for material in list_mut(made, "materials") {
+        let coarser = material.get_mut("extensions").and_then(|own| own.get_mut("MSFT_lod")?.get_mut("ids"));
+        let coarser = coarser.and_then(Value::as_array_mut).into_iter().flatten();
+        coarser.for_each(|material| rename(Some(material), &places));
     }
     let places = unique(made, "meshes", pins);
     list_mut(made, "nodes").iter_mut().for_each(|node| rename(node.get_mut("mesh"), &places));

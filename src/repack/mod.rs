@@ -23,6 +23,7 @@ mod report;
 mod set;
 mod stream;
 mod texture;
+mod thickness;
 
 use gltf::json::accessor::ComponentType;
 use serde_json::{Value, json};
@@ -151,6 +152,7 @@ fn passed(
     node::skins(&mut made, &source, &places, &mut output)?;
     node::copies(&mut made, &source, &mut output)?;
     node::carriers(&mut made, &places);
+    thickness::scale(&mut made, &places);
     let picture_bytes = pictures.read;
     picture::write(&mut made, (&source, &pins), (pictures, options), &mut output)?;
     duplicate::merge(&mut made, &pins);

@@ -10,6 +10,7 @@ use std::collections::BTreeSet;
 use serde_json::Value;
 
 use super::document::{Object, as_index, list, whole};
+use super::thickness;
 use crate::packing::POINTER;
 
 /// Extensions that refer to nothing, or whose references are followed here.
@@ -79,7 +80,7 @@ impl Pins {
     fn extensions(&mut self, root: &Object, value: &Value, looks: bool) {
         for (name, inner) in value.as_object().into_iter().flatten() {
             if name == POINTER {
-                self.property(inner);
+                self.property(root, inner);
             } else if is_known(name) {
                 // Extensions stand in extensions, too.
                 self.walk(root, inner, looks);
@@ -90,9 +91,15 @@ impl Pins {
         }
     }
 
-    /// A property in change is looked for by its place in lists; nodes, lights and cameras keep theirs in any case.
-    fn property(&mut self, value: &Value) {
+    /// A property in change is looked for by its place in lists; nodes, lights and cameras keep theirs in any case. A thickness is
+    /// one in the units of the meshes that wear the material.
+    fn property(&mut self, root: &Object, value: &Value) {
         let pointer = value["pointer"].as_str().unwrap_or_default();
+        if let Some(material) = thickness::pointed(pointer) {
+            let wears = |mesh: &Value| super::primitives(mesh).any(|own| thickness::wears(own, material));
+            let meshes = list(root, "meshes").iter().enumerate().filter(|(_, mesh)| wears(mesh));
+            self.meshes.extend(meshes.map(|(index, _)| index));
+        }
         let list = pointer.split('/').nth(1);
         self.lists.extend(LOOKS.into_iter().chain(["meshes"]).find(|known| Some(*known) == list));
     }

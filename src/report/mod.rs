@@ -111,6 +111,8 @@ pub struct FileFacts {
     pub bytes: u64,
     /// Its BLAKE3 hash in hexadecimal digits.
     pub blake3: String,
+    /// Extensions of the format that it uses, in its order.
+    pub used_extensions: Vec<String>,
 }
 
 /// A grid of positions.
@@ -331,6 +333,7 @@ pub fn measure(
             name: about.file.to_owned(),
             bytes: written.bytes.len() as u64,
             blake3: blake3::hash(&written.bytes).to_hex().to_string(),
+            used_extensions: file.root.extensions_used.clone(),
         },
         totals: totals(&file, &facts, written, &nodes),
         lods: levels::levels(&file, written, &facts),

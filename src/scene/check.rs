@@ -37,7 +37,9 @@ pub enum SceneError {
     #[error("shape `{0}` has no length: rounded to single precision each of its lines is a point")]
     NoLength(String),
     /// A texture is shown on lines.
-    #[error("shape `{0}` is a wire, and its material `{1}` shows a texture: lines have no place for it")]
+    #[error(
+        "shape `{0}` is a wire, and its material `{1}` shows a texture, or shine along one direction: lines have no place for it"
+    )]
     TexturedWire(String, String),
     /// Nothing of a geometry can be seen.
     #[error(
@@ -66,7 +68,9 @@ pub enum SceneError {
     #[error("{0} refers to something that does not exist")]
     Dangling(String),
     /// A texture is shown on a shape without texture coordinates.
-    #[error("shape `{0}` has no texture coordinates, but its material `{1}` shows a texture")]
+    #[error(
+        "shape `{0}` has no texture coordinates, but its material `{1}` shows a texture, or shine along one direction"
+    )]
     NoUv(String, String),
     /// Runs do not cover the triangles in order.
     #[error("shape `{0}` has runs that do not cover its triangles")]
@@ -316,12 +320,12 @@ fn check_use(scene: &Scene, mesh: &MeshUse) -> Result<(), SceneError> {
     }
     for strand in &geometry.wire.strands {
         let worn = mesh.materials[strand.origin as usize].map(|material| &scene.materials[material]);
-        if let Some(material) = worn.filter(|material| material.has_texture()) {
+        if let Some(material) = worn.filter(|material| material.needs_uv()) {
             return Err(SceneError::TexturedWire(geometry.name.clone(), material.name.clone()));
         }
     }
     let shown = mesh.materials.iter().flatten().map(|material| &scene.materials[*material]);
-    let textured = shown.into_iter().find(|material| material.has_texture());
+    let textured = shown.into_iter().find(|material| material.needs_uv());
     match textured.filter(|_| !geometry.uv) {
         Some(material) => Err(SceneError::NoUv(geometry.name.clone(), material.name.clone())),
         None => Ok(()),

@@ -14,7 +14,8 @@ pub use morph::MorphTarget;
 pub use motion::{Animation, Channel, Owner, PropertyChannel, Skin};
 
 pub use crate::model::{
-    AlphaMode, Camera, Filter, Image, ImageHandle, ImageKind, Lens, Light, LightKind, Material, Texture, Wrap,
+    AlphaMode, Camera, Filter, Image, ImageHandle, ImageKind, Lens, Light, LightKind, Material, Texture,
+    TextureUse, Wrap,
 };
 
 use glam::{DQuat, DVec3};

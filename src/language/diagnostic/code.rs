@@ -433,6 +433,9 @@ codes! {
     /// a collider without volume
     FlatCollider = "K0995";
 
+    /// what an engine does not draw of a material
+    EngineMaterials = "K1016";
+
     /// a root of a project has no document
     EmptyRoot = "K1030";
     /// roots of a project overlap

@@ -536,6 +536,9 @@ examples! {
     FlatCollider: "A body that things bounce off encloses a volume. A flat shape has none: a thin box in its place serves better.",
         "[shape.a.disk]\nradius = 1\n[collider.c]\nshape = \"a\"" =>
         "[shape.a.cylinder]\nradius = 1\nheight = 0.02\n[collider.c]\nshape = \"a\"";
+    EngineMaterials: "What a material has beyond color, metal, roughness and light is an extension of the format that files use and never require: engines that do not know it draw the rest. A warning. Bevy draws the pictures of coats, specular, anisotropy and transmission where its features `pbr_multi_layer_material_textures`, `pbr_specular_textures`, `pbr_anisotropy_texture` and `pbr_transmission_textures` are on.",
+        "[output]\nprofiles = [\"bevy\"]\n[shape.a]\nmaterial = \"m\"\n[shape.a.sphere]\nradius = 1\n[material.m]\nsheen = { color = \"#402020\" }" =>
+        "[output]\nprofiles = [\"three\"]\n[shape.a]\nmaterial = \"m\"\n[shape.a.sphere]\nradius = 1\n[material.m]\nsheen = { color = \"#402020\" }";
     EmptyRoot: "Each of the `roots` in kiln.toml is a document, or a folder that has documents in it or in its folders. Files whose names do not end in `.toml`, or begin with a dot, are none.",
         "" => "";
     OverlappingRoots: "Each document of a project belongs to one root, for its output has the place that it has below that. A root that lies in another one, or is named twice, would bake its documents twice.",

@@ -156,6 +156,44 @@ choices! {
         OcclusionStrength = "occlusion-strength";
         /// The opacity below which nothing is there, of a material with `alpha = "mask"`.
         AlphaCutoff = "alpha-cutoff";
+        /// A material's `emissive-strength`, where one is written.
+        EmissiveStrength = "emissive-strength";
+        /// A material's `ior`, where one is written.
+        Ior = "ior";
+        /// A material's `dispersion`, where one is written.
+        Dispersion = "dispersion";
+        /// The `factor` of a material's `clearcoat`.
+        Clearcoat = "clearcoat";
+        /// The `roughness` of a material's `clearcoat`.
+        ClearcoatRoughness = "clearcoat-roughness";
+        /// The strength of the normal texture of a material's `clearcoat`.
+        ClearcoatNormalScale = "clearcoat-normal-scale";
+        /// The `factor` of a material's `transmission`.
+        Transmission = "transmission";
+        /// The `thickness` of a material's `volume`.
+        Thickness = "thickness";
+        /// The `attenuation-distance` of a material's `volume`, where one is written.
+        AttenuationDistance = "attenuation-distance";
+        /// The `attenuation-color` of a material's `volume`.
+        AttenuationColor = "attenuation-color";
+        /// The `factor` of a material's `specular`.
+        Specular = "specular";
+        /// The `color` of a material's `specular`.
+        SpecularColor = "specular-color";
+        /// The `color` of a material's `sheen`.
+        SheenColor = "sheen-color";
+        /// The `roughness` of a material's `sheen`.
+        SheenRoughness = "sheen-roughness";
+        /// The `factor` of a material's `iridescence`.
+        Iridescence = "iridescence";
+        /// The `ior` of a material's `iridescence`.
+        IridescenceIor = "iridescence-ior";
+        /// The `thickness` of a material's `iridescence`.
+        IridescenceThickness = "iridescence-thickness";
+        /// The `strength` of a material's `anisotropy`.
+        Anisotropy = "anisotropy";
+        /// The `rotation` of a material's `anisotropy`.
+        AnisotropyRotation = "anisotropy-rotation";
         /// The strength of a node's light.
         Intensity = "intensity";
         /// How far a node's light shines.
@@ -445,7 +483,15 @@ impl MotionPath {
     /// Whether it can go along a curve.
     #[must_use]
     pub const fn runs_along(self) -> bool {
-        matches!(self, Self::Translation | Self::Color | Self::Emissive)
+        matches!(
+            self,
+            Self::Translation
+                | Self::Color
+                | Self::Emissive
+                | Self::AttenuationColor
+                | Self::SpecularColor
+                | Self::SheenColor
+        )
     }
 }
 

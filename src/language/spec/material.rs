@@ -7,6 +7,9 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::spec::check::Check;
 use crate::language::spec::construct::{choices, table};
 use crate::language::spec::import::FilePath;
+use crate::language::spec::optics::{
+    Anisotropy, Clearcoat, IOR, Iridescence, Sheen, Specular, Transmission, Volume,
+};
 use crate::language::spec::point::read_numbers;
 use crate::language::spec::reader::{Read, Reader, backtick};
 use crate::language::spec::schema::{Schemas, any_of, numbers};
@@ -43,12 +46,34 @@ table! {
         emissive: Option<Sp<Color>>;
         /// An image that multiplies `emissive`.
         emissive_texture: Option<Sp<Texture>>;
+        /// How many times as bright as its colors the light is that the surface gives off.
+        emissive_strength: Option<Sp<f64>> => Check::at_least(0.0).up_to(1e6);
         /// What the color's fourth number does.
         alpha: Sp<Alpha> = Alpha::Opaque;
         /// With `alpha = "mask"`: what is more transparent than this is left out.
         alpha_cutoff: Option<Sp<f64>> => Check::within(0.0, 1.0);
         /// Whether the back of the surface is seen too.
         double_sided: Sp<bool> = false;
+        /// Whether it shows its color as it is, whatever light falls on it.
+        unlit: Sp<bool> = false;
+        /// Index of refraction, of which follows how much it reflects: 1.33 is water, 2.42 diamond; 1.5 when it is not written.
+        ior: Option<Sp<f64>> => IOR;
+        /// How much more its `volume` bends blue than red: 20 over the Abbe number, so 0.31 is crown glass, 0.36 diamond.
+        dispersion: Option<Sp<f64>> => Check::within(0.0, 1000.0);
+        /// A clear coat over it.
+        clearcoat: Option<Sp<Clearcoat>>;
+        /// Light goes through it.
+        transmission: Option<Sp<Transmission>>;
+        /// The body below it.
+        volume: Option<Sp<Volume>>;
+        /// What it reflects where it is no metal.
+        specular: Option<Sp<Specular>>;
+        /// Fibers that stand up from it.
+        sheen: Option<Sp<Sheen>>;
+        /// A thin film on it.
+        iridescence: Option<Sp<Iridescence>>;
+        /// Shine that is drawn out along one direction.
+        anisotropy: Option<Sp<Anisotropy>>;
     }
     checked check
 }
@@ -124,7 +149,7 @@ impl Color {
 
 impl Material {
     fn check(&self, span: crate::language::source::Span, reader: &mut Reader<'_>) -> bool {
-        self.check_alpha(span, reader) && self.check_packed(reader)
+        self.check_alpha(span, reader) && self.check_packed(reader) && self.check_optics(reader)
     }
 
     /// Pictures that are packed into one, which may stand apart.

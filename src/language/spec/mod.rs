@@ -40,6 +40,7 @@ mod name;
 mod node;
 mod nurbs_surface;
 mod operation;
+mod optics;
 mod output;
 mod page;
 mod parametric;
@@ -129,6 +130,7 @@ pub use morph::{DriverAxis, Morph, MorphDriver, MorphName, Morphs, ParameterValu
 pub use node::{Node, SceneImport};
 pub use nurbs_surface::{BSplineSurface, NurbsSurface};
 pub use operation::{Chamfer, Fillet, Offset, OffsetCorner, ProfileSet};
+pub use optics::{Anisotropy, Clearcoat, Iridescence, Sheen, Specular, Transmission, Volume};
 pub use output::{ByProfile, Forward, Output, OutputProfile, OutputScale, Pivot, TextureSize, Textures};
 pub use page::reference;
 pub use parametric::Parametric;

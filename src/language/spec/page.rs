@@ -163,7 +163,21 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
             "sharp corner",
         ],
     ),
-    ("Materials", "", &["material", "texture"]),
+    (
+        "Materials",
+        "",
+        &[
+            "material",
+            "clearcoat",
+            "transmission",
+            "volume",
+            "specular",
+            "sheen",
+            "iridescence",
+            "anisotropy",
+            "texture",
+        ],
+    ),
     (
         "Nodes",
         "A document without nodes shows each shape that no other definition uses.",

@@ -2,7 +2,7 @@
 
 use super::SceneError;
 use crate::motion::{Influences, Path, Property};
-use crate::scene::{AlphaMode, Animation, Channel, Geometry, Lens, Owner, PropertyChannel, Scene, Skin};
+use crate::scene::{Animation, Channel, Geometry, Lens, Owner, PropertyChannel, Scene, Skin};
 
 pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
     for skin in &scene.skins {
@@ -84,7 +84,7 @@ fn check_property(scene: &Scene, channel: &PropertyChannel) -> Result<(), &'stat
     }
     let (least, most) = channel.property.range();
     // Lengths are held against their range in the document's unit, not in metres.
-    let least = if matches!(channel.property, Property::Range | Property::Height) { 0.0 } else { least };
+    let least = if channel.property.is_length() { 0.0 } else { least };
     let within = |value: &f64| value.is_finite() && *value >= least - 1e-6 && *value <= most + 1e-6;
     if !channel.values.iter().all(within) {
         return Err("a value that a property cannot have");
@@ -96,13 +96,7 @@ fn check_property(scene: &Scene, channel: &PropertyChannel) -> Result<(), &'stat
 fn has(scene: &Scene, channel: &PropertyChannel) -> bool {
     match channel.owner {
         Owner::Material(material) => {
-            scene.materials.get(material).is_some_and(|own| match channel.property {
-                Property::Color | Property::Emissive | Property::Metallic | Property::Roughness => true,
-                Property::NormalScale => own.normal_texture.is_some(),
-                Property::OcclusionStrength => own.occlusion_texture.is_some(),
-                Property::AlphaCutoff => matches!(own.alpha, AlphaMode::Mask { .. }),
-                _ => false,
-            })
+            scene.materials.get(material).is_some_and(|own| own.value(channel.property).is_some())
         }
         Owner::Node(node) => scene.nodes.get(node).is_some_and(|own| {
             let lens = own.camera.map(|camera| camera.lens);
