@@ -4,6 +4,7 @@ mod assertion;
 mod baked;
 mod collider;
 mod engine;
+mod exact;
 mod file;
 mod kept;
 mod lod;
@@ -18,8 +19,9 @@ mod state;
 mod subdivide;
 mod texture;
 
+pub use exact::Source;
 use file::{file_name, same_file};
-use notice::noticed;
+use notice::{noticed, too_coarse};
 pub use origin::Origins;
 pub use planned::{estimated_memory, outputs};
 pub(crate) use profile::profile_of;
@@ -62,6 +64,9 @@ pub struct Options {
     pub origins: bool,
     /// Keep how far each triangle is from the exact surface.
     pub deviations: bool,
+    /// For a picture of the surfaces themselves: what is shown is cut to within so many metres, whatever the document says,
+    /// where it is not drawn as a field.
+    pub exact: Option<f64>,
     /// Where realized shapes are kept from one bake to the next.
     pub keep: Option<Arc<dyn Keep>>,
     /// Where it is noted what each shape took.
@@ -88,6 +93,8 @@ pub struct Compiled {
     /// When that was asked for: for each mesh of the file how far its triangles are from the exact surface, metres, at the
     /// places of [`FAN`](crate::geometry::number::FAN); none for a mesh of surfaces that have no form of their own.
     pub deviations: Vec<Option<Vec<[f32; 13]>>>,
+    /// When the surfaces themselves were asked for: how that of each mesh of the file is known.
+    pub sources: Vec<Source>,
     /// What a person should know though nothing is wrong.
     pub warnings: Diagnostics,
 }
@@ -127,7 +134,10 @@ pub fn compile_profiles(
 ) -> Result<Vec<Compiled>, Diagnostics> {
     let fail = |list: Vec<Diagnostic>| document.diagnostics(list);
     let (spec, mut warnings) = document.spec(options.variant.as_deref(), &options.overrides)?;
-    let built = state::model(document, &spec, files, options)?;
+    let mut built = state::model(document, &spec, files, options)?;
+    if let Some(tolerance) = options.exact {
+        exact::refine(&mut built, tolerance);
+    }
     warnings.extend(built.warnings.iter().cloned());
     let profiles = profiles(&spec, options);
     if let Some(same) = same_file(document, &spec, &profiles) {
@@ -180,7 +190,9 @@ impl Made<'_> {
     /// kept within the rest of it: an eighth goes to rounding, and more where the grid is coarser.
     fn surfaces(&self, profile: Profile) -> Result<(Surfaces, Vec<Diagnostic>), Vec<Diagnostic>> {
         let (mut surfaces, mut found) = self.finest(profile)?;
-        found.extend(lod::add(self, &mut surfaces)?);
+        if self.options.exact.is_none() {
+            found.extend(lod::add(self, &mut surfaces)?);
+        }
         baked::bake(self, &mut surfaces)?;
         Ok((surfaces, found))
     }
@@ -271,6 +283,8 @@ impl Made<'_> {
         let checked = scene::check::check(&scene).map_err(|error| vec![unwritable(&error, built)])?;
         let file = file_name(options, profile, level);
         let written = gltf::write(checked, profile, options.measure || options.origins || options.deviations);
+        let sources =
+            if options.exact.is_some() { exact::sources(built, &scene, shapes) } else { Vec::new() };
         let meshes: Vec<usize> = scene.meshes.iter().map(|mesh| mesh.geometry).collect();
         // From here on the bytes speak for themselves; the scene's memory is needed no more.
         drop(scene);
@@ -301,21 +315,18 @@ impl Made<'_> {
         };
         let origins = options.origins.then(|| Origins::new((built, shapes), meshes, &written));
         let warnings = self.document.diagnostics(warnings);
-        Ok(Compiled { bytes: written.bytes, file, profile, level, report, origins, deviations, warnings })
+        Ok(Compiled {
+            bytes: written.bytes,
+            file,
+            profile,
+            level,
+            report,
+            origins,
+            deviations,
+            sources,
+            warnings,
+        })
     }
-}
-
-fn too_coarse(profile: Profile, coarse: &optimize::TooCoarse, spec: &Spec) -> Diagnostic {
-    let message = format!(
-        "profile `{}` keeps its positions in single precision: on a grid of 16 bits over the whole model they would move by up to {:.3e} m, and half of the tolerance, {:.3e} m, is what rounding may take",
-        profile.name(),
-        coarse.moved,
-        coarse.allowed
-    );
-    let place = spec.tolerance.as_ref().map_or(Span::NONE, |tolerance| tolerance.span);
-    Diagnostic::warning(Code::CoarseGrid, message)
-        .at(place, "")
-        .help("write a coarser `tolerance`, or split the model into documents of their own")
 }
 
 /// Builds the exact model of a document, for `sample`.

@@ -31,7 +31,7 @@
 //! | `gltf` | `geometry::number`, `geometry::mesh`, `geometry::tessellate`, `motion`, `packing`, `scene` |
 //! | `repack` | `geometry::number`, `geometry::mesh`, `packing`, `import`, `optimize`, `gltf` |
 //! | `report` | `geometry`, `motion`, `model`, `packing`, `scene`, `realize`, `gltf` |
-//! | `preview` | `geometry::number`, `packing`, `import` |
+//! | `preview` | `geometry::number`, `geometry::formula`, `geometry::mesh`, `geometry::field`, `packing`, `import` |
 //! | `language` | `geometry::number` |
 //! | `build` | `geometry`, `motion`, `import`, `language`, `model` |
 //! | `compile` | everything but `cli` |

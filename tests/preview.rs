@@ -1,6 +1,7 @@
 //! Pictures: what is seen of baked files, by closed forms, by brute force and by the z-buffer.
 
 mod drawing;
+mod exact;
 mod files;
 
 use glam::DVec3;

@@ -360,6 +360,10 @@ pub(crate) struct Render {
     /// texel-density, or weights:JOINT
     #[arg(long, value_name = "WHAT", value_parser = heat)]
     pub(crate) heat: Option<Heat>,
+    /// Draw the surfaces of a document themselves, not their triangles, and say of each how well it is known: the ground
+    /// truth for the mesh, seen by the same camera
+    #[arg(long)]
+    pub(crate) exact: bool,
     /// How light is reflected
     #[arg(long, value_enum, default_value_t = ShadingName::Standard)]
     pub(crate) shading: ShadingName,

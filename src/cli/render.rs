@@ -1,5 +1,7 @@
 //! `kiln render`: pictures of documents and of `.glb` files.
 
+mod exact;
+
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
@@ -10,6 +12,8 @@ use super::output::Printer;
 use super::project::single;
 use crate::compile::{Options, compile_profiles};
 use crate::gltf::Profile;
+use crate::language::Document;
+use crate::language::source::DiskFiles;
 use crate::preview::asset::{self, Asset};
 use crate::preview::heat::{Heat, HeatMap, Measured};
 use crate::preview::lines::{Ink, draw_lines, postscript, svg};
@@ -66,15 +70,17 @@ fn picture(render: &Render, printer: &Printer) -> Result<(), Fault> {
     if render.heat.is_some() && (drawn || plays) {
         return Err(usage("--heat makes pictures of one moment: write a .png, or an .apng with --turntable"));
     }
+    if render.exact {
+        exact::allowed(render, drawn)?;
+    }
     let (bytes, deviations) = bytes(render, printer)?;
-    let mut asset = asset::read(&bytes)
-        .map_err(|error| (Some(format!("{}: {error}", render.file.display())), Outcome::Errors))?;
+    let mut asset = read(render, &bytes)?;
     asset.show_level(render.lod.into());
     for note in &asset.notes {
         printer.result(&format!("note: {note}"), &json!({ "note": note }));
     }
     let file = if plays {
-        clip(render, &asset)?
+        clip(render, printer, &asset)?
     } else {
         let mut stage = stage(&asset, render, render.time.unwrap_or(0.0))?;
         if let Some(heat) = &render.heat {
@@ -88,9 +94,12 @@ fn picture(render: &Render, printer: &Printer) -> Result<(), Fault> {
             stage.heat = Some(map);
         }
         match render.turntable {
-            Some(count) => turntable(render, &asset, &stage, count)?,
+            Some(count) => turntable(render, printer, (&asset, &stage), count)?,
             None if drawn => lines(render, &stage, &ending).into_bytes(),
-            None => legended(render, &stage, still(render, &asset, &stage)?).png().map_err(unwritten)?,
+            None => {
+                let picture = still(render, printer, &asset, &stage)?;
+                legended(render, &stage, picture).png().map_err(unwritten)?
+            }
         }
     };
     let folder = out.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
@@ -127,32 +136,15 @@ fn legended(render: &Render, stage: &Stage, picture: Picture) -> Picture {
 /// The bytes to draw: of a `.glb` file as they are, of a document as it is baked, with the distances of its triangles from
 /// the true surface where those are shown.
 fn bytes(render: &Render, printer: &Printer) -> Result<(Vec<u8>, Vec<Option<Measured>>), Fault> {
-    let file = render.file.display();
-    let unread = |error: std::io::Error| (Some(format!("{file}: {}", reason(&error))), Outcome::Files);
     if render.file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("glb")) {
         if render.variant.is_some() || !render.set.is_empty() {
             let message = "--variant and --set are for documents; a .glb file is drawn as it is";
             return Err((Some(message.to_owned()), Outcome::Usage));
         }
-        return Ok((std::fs::read(&render.file).map_err(unread)?, Vec::new()));
+        return Ok((std::fs::read(&render.file).map_err(|error| unread(render, &error))?, Vec::new()));
     }
-    let given = (render.root.as_deref(), render.set.as_slice());
-    let (_, task, documents) = single(&render.file, given, printer).map_err(|outcome| (None, outcome))?;
-    let (files, document) = task.load().map_err(unread)?;
-    let compiled = document.and_then(|document| {
-        let options = Options {
-            variant: render.variant.clone(),
-            overrides: documents.overrides(&document),
-            name: task.name().to_owned(),
-            path: task.path.clone(),
-            no_report: true,
-            deviations: render.heat == Some(Heat::Deviation),
-            profiles: vec![Profile::Core],
-            ..Options::default()
-        };
-        compile_profiles(&document, &files, &options)
-    });
-    let mut compiled = compiled.map_err(|list| {
+    let (files, document, options) = document(render, printer)?;
+    let mut compiled = compile_profiles(&document, &files, &options).map_err(|list| {
         printer.diagnostics(&list);
         (None, Outcome::Errors)
     })?;
@@ -163,6 +155,36 @@ fn bytes(render: &Render, printer: &Printer) -> Result<(Vec<u8>, Vec<Option<Meas
     let shown = usize::from(render.lod).min(compiled.len() - 1);
     let shown = compiled.swap_remove(shown);
     Ok((shown.bytes, shown.deviations))
+}
+
+/// The document to draw, the files that it is read from, and how it is baked.
+fn document(render: &Render, printer: &Printer) -> Result<(DiskFiles, Document, Options), Fault> {
+    let given = (render.root.as_deref(), render.set.as_slice());
+    let (_, task, documents) = single(&render.file, given, printer).map_err(|outcome| (None, outcome))?;
+    let (files, document) = task.load().map_err(|error| unread(render, &error))?;
+    let document = document.map_err(|list| {
+        printer.diagnostics(&list);
+        (None, Outcome::Errors)
+    })?;
+    let options = Options {
+        variant: render.variant.clone(),
+        overrides: documents.overrides(&document),
+        name: task.name().to_owned(),
+        path: task.path.clone(),
+        no_report: true,
+        deviations: render.heat == Some(Heat::Deviation),
+        profiles: vec![Profile::Core],
+        ..Options::default()
+    };
+    Ok((files, document, options))
+}
+
+fn unread(render: &Render, error: &std::io::Error) -> Fault {
+    (Some(format!("{}: {}", render.file.display(), reason(error))), Outcome::Files)
+}
+
+fn read(render: &Render, bytes: &[u8]) -> Result<Asset, Fault> {
+    asset::read(bytes).map_err(|error| (Some(format!("{}: {error}", render.file.display())), Outcome::Errors))
 }
 
 fn stage(asset: &Asset, render: &Render, time: f64) -> Result<Stage, Fault> {
@@ -204,14 +226,35 @@ fn through(render: &Render, stage: &Stage, look: &Look) -> Result<Option<Camera>
     })
 }
 
-/// All views on one sheet.
-fn still(render: &Render, asset: &Asset, stage: &Stage) -> Result<Picture, Fault> {
+/// Pictures of one moment each, by cameras: of the file, or where that is asked for of the surfaces behind it.
+fn pictures(
+    render: &Render,
+    printer: &Printer,
+    asset: &Asset,
+    shots: &[(&Stage, f64, Camera)],
+) -> Result<Vec<Picture>, Fault> {
     let look = look(render);
-    if let Some(camera) = through(render, stage, &look)? {
-        return Ok(draw_picture(asset, stage, &camera, &look));
+    if !render.exact {
+        let draw = |(stage, _, camera): &(&Stage, f64, Camera)| draw_picture(asset, stage, camera, &look);
+        return Ok(shots.iter().map(draw).collect());
     }
-    let of = |view: &View| draw_picture(asset, stage, &Camera::on(&[stage], *view, &look), &look);
-    let mut pictures: Vec<Picture> = render.view.iter().map(of).collect();
+    let (stages, cameras): (Vec<&Stage>, Vec<Camera>) =
+        shots.iter().map(|(stage, _, camera)| (*stage, *camera)).unzip();
+    let surface = exact::Surface::new(render, printer, &cameras, &stages)?;
+    surface.tell(render, printer)?;
+    shots.iter().map(|(_, time, camera)| surface.draw(render, *time, camera, &look)).collect()
+}
+
+/// All views on one sheet.
+fn still(render: &Render, printer: &Printer, asset: &Asset, stage: &Stage) -> Result<Picture, Fault> {
+    let look = look(render);
+    let time = render.time.unwrap_or(0.0);
+    let cameras = match through(render, stage, &look)? {
+        Some(camera) => vec![camera],
+        None => render.view.iter().map(|view| Camera::on(&[stage], *view, &look)).collect(),
+    };
+    let shots: Vec<(&Stage, f64, Camera)> = cameras.into_iter().map(|camera| (stage, time, camera)).collect();
+    let mut pictures = pictures(render, printer, asset, &shots)?;
     Ok(match pictures.len() {
         1 => pictures.remove(0),
         _ => Picture::sheet(&pictures, look.background),
@@ -229,23 +272,27 @@ fn lines(render: &Render, stage: &Stage, ending: &str) -> String {
 }
 
 /// Once around, from the first view; the distance stays.
-fn turntable(render: &Render, asset: &Asset, stage: &Stage, count: u16) -> Result<Vec<u8>, Fault> {
+fn turntable(
+    render: &Render,
+    printer: &Printer,
+    (asset, stage): (&Asset, &Stage),
+    count: u16,
+) -> Result<Vec<u8>, Fault> {
     let look = look(render);
     let start = first_view(render);
     let view = |k: u16| View { azimuth: start.azimuth + 360.0 * f64::from(k) / f64::from(count), ..start };
-    let pictures: Vec<Picture> = (0..count)
-        .map(|k| {
-            let camera = Camera::turning(&stage.bounds, view(k), look.projection, look.size);
-            legended(render, stage, draw_picture(asset, stage, &camera, &look))
-        })
-        .collect();
+    let time = render.time.unwrap_or(0.0);
+    let camera = |k: u16| Camera::turning(&stage.bounds, view(k), look.projection, look.size);
+    let shots: Vec<(&Stage, f64, Camera)> = (0..count).map(|k| (stage, time, camera(k))).collect();
+    let pictures = pictures(render, printer, asset, &shots)?.into_iter();
+    let pictures: Vec<Picture> = pictures.map(|picture| legended(render, stage, picture)).collect();
     // Once around takes four seconds, however many pictures there are.
     let milliseconds = (4000 / count).max(10);
     Picture::animation(&pictures, milliseconds).map_err(unwritten)
 }
 
 /// The whole clip; the camera stands where it sees all of it.
-fn clip(render: &Render, asset: &Asset) -> Result<Vec<u8>, Fault> {
+fn clip(render: &Render, printer: &Printer, asset: &Asset) -> Result<Vec<u8>, Fault> {
     let look = look(render);
     let name = render.clip.as_deref().unwrap_or_default();
     let found = asset.clips.iter().find(|clip| clip.name == name);
@@ -257,16 +304,16 @@ fn clip(render: &Render, asset: &Asset) -> Result<Vec<u8>, Fault> {
         );
         return Err((Some(message), Outcome::Usage));
     }
-    let stages: Result<Vec<Stage>, Fault> =
-        (0..count).map(|k| stage(asset, render, k as f64 / RATE)).collect();
+    let time = |k: usize| k as f64 / RATE;
+    let stages: Result<Vec<Stage>, Fault> = (0..count).map(|k| stage(asset, render, time(k))).collect();
     let stages = stages?;
     let all: Vec<&Stage> = stages.iter().collect();
     let outside = Camera::on(&all, first_view(render), &look);
-    let picture = |stage: &Stage| {
-        let camera = through(render, stage, &look)?.unwrap_or(outside);
-        Ok(draw_picture(asset, stage, &camera, &look))
-    };
-    let pictures: Vec<Picture> = stages.iter().map(picture).collect::<Result<_, Fault>>()?;
+    let shot = |(k, stage): (usize, &'_ Stage)| Ok((k, through(render, stage, &look)?.unwrap_or(outside)));
+    let cameras: Vec<(usize, Camera)> = stages.iter().enumerate().map(shot).collect::<Result<_, Fault>>()?;
+    let shots: Vec<(&Stage, f64, Camera)> =
+        cameras.into_iter().map(|(k, camera)| (&stages[k], time(k), camera)).collect();
+    let pictures = pictures(render, printer, asset, &shots)?;
     Picture::animation(&pictures, 42).map_err(unwritten)
 }
 

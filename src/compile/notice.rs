@@ -2,9 +2,12 @@
 
 use super::place;
 use crate::build::Built;
+use crate::gltf::Profile;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
+use crate::language::spec::Spec;
 use crate::model::ShapeHandle;
+use crate::optimize;
 use crate::realize::{Faces, Note};
 
 /// How a note reads.
@@ -77,3 +80,17 @@ const CROSSING: Words = Words {
         "name the corners in the order in which they follow each other around the face; holes lie inside of their outline",
     ),
 };
+
+/// What is said where whole numbers would move positions too far.
+pub(super) fn too_coarse(profile: Profile, coarse: &optimize::TooCoarse, spec: &Spec) -> Diagnostic {
+    let message = format!(
+        "profile `{}` keeps its positions in single precision: on a grid of 16 bits over the whole model they would move by up to {:.3e} m, and half of the tolerance, {:.3e} m, is what rounding may take",
+        profile.name(),
+        coarse.moved,
+        coarse.allowed
+    );
+    let place = spec.tolerance.as_ref().map_or(Span::NONE, |tolerance| tolerance.span);
+    Diagnostic::warning(Code::CoarseGrid, message)
+        .at(place, "")
+        .help("write a coarser `tolerance`, or split the model into documents of their own")
+}

@@ -63,6 +63,9 @@ const MARGIN: f64 = 0.06;
 /// How far beyond its borders a picture through a camera of a file keeps what it is made of, times its half size.
 const BEYOND: f64 = 1.25;
 
+/// Where the eye stands in a box, the share of that box's size from which on pixels are measured.
+const NEAREST: f64 = 0.01;
+
 /// Corners of the polygon that stands for a circle.
 const RIM: u32 = 64;
 
@@ -262,6 +265,50 @@ impl Camera {
         match self.projection {
             Projection::Orthographic => (self.eye + self.axes * across.extend(0.0), -self.axes.z_axis),
             Projection::Perspective => (self.eye, self.axes * across.extend(-1.0).normalize()),
+        }
+    }
+
+    /// How space becomes its picture.
+    #[must_use]
+    pub fn projection(&self) -> Projection {
+        self.projection
+    }
+
+    /// Where it stands; of an orthographic one a point in the middle of what it sees.
+    pub(super) fn eye(&self) -> DVec3 {
+        self.eye
+    }
+
+    /// How far a line of sight lies beside the middle one, at distance 1 where they meet in the eye.
+    pub(super) fn plane(&self, place: DVec2) -> DVec3 {
+        let plane = (place - self.center) / self.scale;
+        self.axes * DVec3::new(plane.x, -plane.y, 0.0)
+    }
+
+    /// How far away a point is along the way the camera looks.
+    pub(super) fn away(&self, point: DVec3) -> f64 {
+        -self.axes.z_axis.dot(point - self.eye)
+    }
+
+    /// The distances along that way that are seen.
+    pub(super) fn seen_range(&self) -> (f64, f64) {
+        self.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY))
+    }
+
+    /// The least length that a pixel spans on what is in a box, before the camera.
+    #[must_use]
+    pub fn pixel(&self, bounds: &Bounds) -> f64 {
+        match self.projection {
+            Projection::Orthographic => 1.0 / self.scale,
+            Projection::Perspective => {
+                let nearest = bounds
+                    .corners()
+                    .map(|corner| self.away(corner))
+                    .into_iter()
+                    .fold(f64::INFINITY, f64::min);
+                let (near, _) = self.seen_range();
+                nearest.max(near).max(NEAREST * bounds.diagonal()) / self.scale
+            }
         }
     }
 

@@ -13,6 +13,7 @@
 pub mod asset;
 mod camera;
 mod color;
+pub mod exact;
 pub mod heat;
 mod legend;
 mod light;
@@ -27,6 +28,7 @@ use glam::{DVec2, DVec3, Vec3, Vec4};
 
 use asset::Asset;
 pub use camera::{Camera, Projection, View};
+use exact::Exact;
 pub use picture::{Picture, PictureError};
 use raster::{Face, MIDDLE, SIXTEEN, Seen, Tile, Veil, draw};
 use shader::Shader;
@@ -82,12 +84,25 @@ const HALF_LINE: f64 = 0.75;
 /// Draws a stage as it is seen by a camera that was made for the same size of picture.
 #[must_use]
 pub fn draw_picture(asset: &Asset, stage: &Stage, camera: &Camera, look: &Look) -> Picture {
+    draw_exact((asset, stage), &Exact::new(stage, &[]), camera, look)
+}
+
+/// The same with surfaces that stand in place of triangles.
+#[must_use]
+pub fn draw_exact(
+    (asset, stage): (&Asset, &Stage),
+    exact: &Exact<'_>,
+    camera: &Camera,
+    look: &Look,
+) -> Picture {
     let (width, height) = (look.size.0 as usize, look.size.1 as usize);
-    let faces = faces(stage, camera);
-    let shader = Shader::new((asset, stage), camera, look);
+    let faces = faces(stage, exact, camera);
+    let shader = Shader::new((asset, stage), exact, camera, look);
+    let first = shader.first_exact();
     let behind = look.background;
     let opacity = |name: u32, place: DVec2| shader.opacity(name, place);
     let tiles = draw(&faces, (width, height), SIXTEEN, &opacity, |tile| {
+        exact.paint(tile, (camera, SIXTEEN, first));
         let mut veils = tile.veils.as_slice();
         let mut pixels = Vec::with_capacity(tile.width * tile.height);
         for number in 0..tile.width * tile.height {
@@ -123,10 +138,10 @@ fn corner(tile: &Tile, number: usize) -> DVec2 {
 }
 
 /// Triangles and lines in the picture; lines have the names after those of the triangles.
-fn faces(stage: &Stage, camera: &Camera) -> Vec<Face> {
+fn faces(stage: &Stage, exact: &Exact<'_>, camera: &Camera) -> Vec<Face> {
     let point = |vertex: u32| stage.vertices[vertex as usize].point;
     let mut faces = Vec::with_capacity(stage.triangles.len() + 2 * stage.lines.len());
-    for (name, corners) in stage.triangles.iter().enumerate() {
+    for (name, corners) in stage.triangles.iter().enumerate().filter(|(name, _)| !exact.replaces(*name)) {
         let seen = camera.seen(&corners.map(point));
         let places: Vec<_> = seen.into_iter().filter_map(|point| camera.project(point)).collect();
         for k in 1..places.len().saturating_sub(1) {
@@ -169,7 +184,8 @@ fn resolve(
     for (number, group) in groups.iter().enumerate() {
         if number < MOST {
             let place = corner + group.places / f64::from(group.covered.count_ones());
-            let color = shader.color(group.name, place).clamp(Vec3::ZERO, Vec3::ONE).extend(1.0);
+            let depth = group.depths / f64::from(group.covered.count_ones());
+            let color = shader.color(group.name, place, depth).clamp(Vec3::ZERO, Vec3::ONE).extend(1.0);
             group.cover(&mut samples, color);
             first = if number == 0 { color } else { first };
         } else {
@@ -177,7 +193,8 @@ fn resolve(
         }
     }
     for veil in veils {
-        let color = shader.color(veil.name, corner + DVec2::splat(0.5)).clamp(Vec3::ZERO, Vec3::ONE);
+        let middle = corner + DVec2::splat(0.5);
+        let color = shader.color(veil.name, middle, veil.depth.into()).clamp(Vec3::ZERO, Vec3::ONE);
         let over = (color * veil.opacity).extend(veil.opacity);
         for (k, (sample, seen)) in samples.iter_mut().zip(seen).enumerate() {
             if veil.covered >> k & 1 == 1 && veil.depth < seen.depth {
@@ -200,6 +217,8 @@ struct Group {
     covered: u32,
     /// The sum of their places in the pixel.
     places: DVec2,
+    /// The sum of how far away they are.
+    depths: f64,
 }
 
 impl Group {
@@ -224,8 +243,12 @@ fn groups(seen: &[Seen]) -> Vec<Group> {
             Some(group) => {
                 group.covered |= 1 << k;
                 group.places += place;
+                group.depths += f64::from(seen.depth);
             }
-            None => groups.push(Group { name: seen.name, covered: 1 << k, places: place }),
+            None => {
+                let depths = seen.depth.into();
+                groups.push(Group { name: seen.name, covered: 1 << k, places: place, depths });
+            }
         }
     }
     groups.sort_by_key(|group| (std::cmp::Reverse(group.covered.count_ones()), group.name));
@@ -249,9 +272,21 @@ fn used_points(stage: &Stage) -> impl Iterator<Item = DVec3> + Clone + '_ {
 /// How far away what is seen in the middle of each pixel is, as [`Camera::depth`] says; infinite where nothing is. Row by
 /// row from the top.
 #[must_use]
-pub fn depths(stage: &Stage, camera: &Camera, (width, height): (u32, u32)) -> Vec<f32> {
+pub fn depths(stage: &Stage, camera: &Camera, size: (u32, u32)) -> Vec<f32> {
+    exact_depths(stage, &Exact::new(stage, &[]), camera, size)
+}
+
+/// The same with surfaces that stand in place of triangles.
+#[must_use]
+pub fn exact_depths(
+    stage: &Stage,
+    exact: &Exact<'_>,
+    camera: &Camera,
+    (width, height): (u32, u32),
+) -> Vec<f32> {
     let (width, height) = (width as usize, height as usize);
-    let tiles = draw(&faces(stage, camera), (width, height), MIDDLE, &|_, _| 1.0, |tile| {
+    let tiles = draw(&faces(stage, exact, camera), (width, height), MIDDLE, &|_, _| 1.0, |tile| {
+        exact.paint(tile, (camera, MIDDLE, 0));
         (tile.left, tile.top, tile.width, tile.seen.iter().map(|seen| seen.depth).collect())
     });
     gathered(tiles, (width, height), f32::INFINITY)

@@ -115,7 +115,7 @@ pub(super) fn draw<T: Send>(
     (width, height): (usize, usize),
     pattern: Pattern,
     opacity: &(impl Fn(u32, DVec2) -> f32 + Sync),
-    finish: impl Fn(&Tile) -> T + Sync,
+    finish: impl Fn(&mut Tile) -> T + Sync,
 ) -> Vec<T> {
     let ready: Vec<Ready> = faces.iter().filter_map(|face| Ready::new(face, (width, height))).collect();
     let (across, down) = (width.div_ceil(SIDE), height.div_ceil(SIDE));

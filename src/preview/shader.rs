@@ -5,16 +5,18 @@ use glam::{DMat3, DVec2, DVec3, Vec3, Vec4};
 use super::asset::{Asset, Cutoff, Map, Material};
 use super::camera::Camera;
 use super::color;
+use super::exact::Exact;
 use super::light::{Light, Surface, lights};
 use super::shadow::Shadow;
 use super::stage::{Stage, Vertex};
 use super::{Look, Shading};
-use crate::geometry::number::{ln, single};
+use crate::geometry::number::{count_of, ln, single};
 
 /// Colors of the faces of one picture; names past those of the triangles are lines.
 pub(super) struct Shader<'a> {
     asset: &'a Asset,
     stage: &'a Stage,
+    exact: &'a Exact<'a>,
     camera: &'a Camera,
     shading: Shading,
     lights: [Light; 3],
@@ -36,28 +38,40 @@ const UNMEASURED: Vec3 = Vec3::splat(0.4);
 /// What the back of a surface that has none is multiplied with: it is not drawn in engines, and here it is red.
 const BACK: Vec3 = Vec3::new(0.75, 0.12, 0.10);
 
-/// A triangle at a place of the picture.
+/// A surface at a place of the picture.
 struct Hit {
+    /// The triangle, or that nearest to it.
+    name: u32,
     corners: [Vertex; 3],
     /// How much each corner counts.
     shares: [f64; 3],
     point: DVec3,
-    /// Across the triangle, on its front; of length 1.
+    /// Across the triangle or the surface, on its front; of length 1.
     across: DVec3,
+    /// The normal that light sees, on its front; of length 1.
+    smooth: DVec3,
     front: bool,
+    /// How far from it the triangles are that cast shadows.
+    lift: f64,
 }
 
 impl<'a> Shader<'a> {
-    pub(super) fn new((asset, stage): (&'a Asset, &'a Stage), camera: &'a Camera, look: &Look) -> Self {
+    pub(super) fn new(
+        (asset, stage): (&'a Asset, &'a Stage),
+        exact: &'a Exact<'a>,
+        camera: &'a Camera,
+        look: &Look,
+    ) -> Self {
         let mut materials = Vec::with_capacity(stage.triangles.len());
         for piece in &stage.pieces {
-            materials.resize(piece.end, crate::geometry::number::count_of(piece.material));
+            materials.resize(piece.end, count_of(piece.material));
         }
         let lights = lights(&camera.axes());
         let opaque = stage.materials.iter().all(|material| material.cutoff == Cutoff::Opaque);
         let mut shader = Self {
             asset,
             stage,
+            exact,
             camera,
             shading: look.shading,
             lights,
@@ -74,6 +88,11 @@ impl<'a> Shader<'a> {
             shader.vertices = shader.lit_vertices();
         }
         shader
+    }
+
+    /// The name of the first surface that stands in place of triangles.
+    pub(super) fn first_exact(&self) -> u32 {
+        count_of(self.stage.triangles.len() + self.stage.lines.len())
     }
 
     fn material(&self, triangle: u32) -> &Material {
@@ -124,32 +143,51 @@ impl<'a> Shader<'a> {
         let twice = normal.length_squared();
         let mut shares = [1.0 / 3.0; 3];
         if slope * slope > 1e-18 * twice {
-            let point = start + along * (normal.dot(a - start) / slope);
-            let part = |one: DVec3, other: DVec3| (one - point).cross(other - point).dot(normal) / twice;
             // The middle of what is covered may lie outside.
-            let own = [part(b, c), part(c, a), part(a, b)].map(|share| share.clamp(0.0, 1.0));
-            let sum: f64 = own.iter().sum();
-            shares = own.map(|share| share / sum);
+            shares = shares_of([a, b, c], start + along * (normal.dot(a - start) / slope));
         }
         let point = a * shares[0] + b * shares[1] + c * shares[2];
-        Hit { corners, shares, point, across: normal.normalize_or_zero(), front: slope <= 0.0 }
+        let across = normal.normalize_or_zero();
+        let smooth = mixed(&corners, shares, |vertex| vertex.normal).normalize_or(across);
+        Hit { name, corners, shares, point, across, smooth, front: slope <= 0.0, lift: 0.0 }
     }
 
-    /// The color of a face at a place, for a screen: linear, 0 to 1.
-    pub(super) fn color(&self, name: u32, place: DVec2) -> Vec3 {
-        if name as usize >= self.stage.triangles.len() {
-            return LINE;
+    /// The same of a surface that stands in place of triangles, about so deep in the picture.
+    fn exact_hit(&self, number: u32, place: DVec2, depth: f64) -> Hit {
+        let met = self.exact.met(number, self.camera, place, depth);
+        let corners = self.corners(met.triangle);
+        let shares = shares_of(corners.map(|corner| corner.point), met.point);
+        Hit {
+            name: met.triangle,
+            corners,
+            shares,
+            point: met.point,
+            across: met.normal,
+            smooth: met.normal,
+            front: met.front,
+            lift: met.lift,
         }
-        let hit = self.hit(name, place);
+    }
+
+    /// The color of a face at a place, about so deep in the picture, for a screen: linear, 0 to 1.
+    pub(super) fn color(&self, name: u32, place: DVec2, depth: f64) -> Vec3 {
+        let first = self.first_exact();
+        let hit = if name >= first {
+            self.exact_hit(name - first, place, depth)
+        } else if name as usize >= self.stage.triangles.len() {
+            return LINE;
+        } else {
+            self.hit(name, place)
+        };
+        let name = hit.name;
         if let Some(heat) = &self.stage.heat {
             // So little shade that colors are still those of the legend.
             let facing = hit.across.dot(self.camera.towards(hit.point)).abs();
             return heat.color(name, hit.shares).unwrap_or(UNMEASURED) * single(0.8 + 0.2 * facing);
         }
         let material = self.material(name);
-        let smooth = mixed(&hit, |vertex| vertex.normal).normalize_or(hit.across);
         let side = if hit.front { 1.0 } else { -1.0 };
-        let mut normal = if self.shading == Shading::Flat { hit.across } else { smooth } * side;
+        let mut normal = if self.shading == Shading::Flat { hit.across } else { hit.smooth } * side;
         if self.shading == Shading::Normals {
             return (normal.as_vec3() * 0.5 + 0.5).clamp(Vec3::ZERO, Vec3::ONE);
         }
@@ -170,7 +208,10 @@ impl<'a> Shader<'a> {
             normal = self.bent(&hit, (map, scale), normal, level);
         }
         let surface = self.surface(material, &hit, (own, normal, level));
-        let shadow = self.shadow.as_ref().map_or(1.0, |shadow| shadow.at(hit.point, hit.across * side));
+        let shadow = self.shadow.as_ref().map_or(1.0, |shadow| {
+            let across = hit.across * side;
+            shadow.at(hit.point + across * hit.lift, across)
+        });
         let light = match self.shading {
             Shading::Phong | Shading::Flat => surface.phong(&self.lights, shadow),
             _ => surface.reflected(&self.lights, shadow) + self.emitted(material, &hit, level),
@@ -208,7 +249,7 @@ impl<'a> Shader<'a> {
     /// coordinates of the triangle.
     fn bent(&self, hit: &Hit, (map, scale): (Map, f32), normal: DVec3, level: f64) -> DVec3 {
         let value = self.mapped(Some(map), hit, level) * 2.0 - 1.0;
-        let own = mixed(hit, |vertex| {
+        let own = mixed(&hit.corners, hit.shares, |vertex| {
             DVec3::new(vertex.tangent[0].into(), vertex.tangent[1].into(), vertex.tangent[2].into())
         });
         let (tangent, hand) = if own == DVec3::ZERO {
@@ -275,6 +316,16 @@ fn coordinates(map: &Map, hit: &Hit) -> [f64; 2] {
     map.place.transform_point2(place).to_array()
 }
 
-fn mixed(hit: &Hit, of: impl Fn(&Vertex) -> DVec3) -> DVec3 {
-    (0..3).map(|k| of(&hit.corners[k]) * hit.shares[k]).sum()
+fn mixed(corners: &[Vertex; 3], shares: [f64; 3], of: impl Fn(&Vertex) -> DVec3) -> DVec3 {
+    (0..3).map(|k| of(&corners[k]) * shares[k]).sum()
+}
+
+/// How much each corner of a triangle counts at a point over it; beside it, at a point of it.
+fn shares_of([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
+    let normal = (b - a).cross(c - a);
+    let twice = normal.length_squared();
+    let part = |one: DVec3, other: DVec3| (one - point).cross(other - point).dot(normal) / twice;
+    let own = [part(b, c), part(c, a), part(a, b)].map(|share| share.clamp(0.0, 1.0));
+    let sum: f64 = own.iter().sum();
+    if sum > 0.0 { own.map(|share| share / sum) } else { [1.0 / 3.0; 3] }
 }

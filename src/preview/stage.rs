@@ -66,6 +66,10 @@ pub struct Piece {
     pub material: usize,
     /// One more than its last triangle.
     pub end: usize,
+    /// The mesh.
+    pub mesh: usize,
+    /// From the axes of the mesh to space; none where joints or morph targets bend it.
+    pub world: Option<DMat4>,
 }
 
 /// Which moment.
@@ -142,7 +146,8 @@ impl Stage {
                 let name = nodes[node].name.clone();
                 stage.eyes.push(Eye { name, world: worlds[node], lens });
             }
-            let Some(mesh) = nodes[node].mesh.and_then(|mesh| asset.meshes.get(mesh)) else { continue };
+            let Some(number) = nodes[node].mesh.filter(|mesh| *mesh < asset.meshes.len()) else { continue };
+            let mesh = &asset.meshes[number];
             let own = &nodes[node].weights;
             let weights = if own.is_empty() { &mesh.weights } else { own };
             let joints: Option<Vec<DMat4>> = nodes[node].skin.map(|skin| {
@@ -153,11 +158,17 @@ impl Stage {
                     .map(|(joint, inverse)| worlds[*joint] * *inverse)
                     .collect()
             });
+            let moved = joints.is_some()
+                || mesh.parts.iter().any(|part| {
+                    let mut own = part.targets.iter().zip(weights);
+                    own.any(|(_, weight)| *weight != 0.0)
+                });
+            let world = (!moved).then_some(worlds[node]);
             for part in &mesh.parts {
                 stage.add(part, weights, (worlds[node], joints.as_deref()));
                 let last = asset.materials.len() - 1;
                 let material = part.material.unwrap_or(last).min(last);
-                stage.pieces.push(Piece { node, material, end: stage.triangles.len() });
+                stage.pieces.push(Piece { node, material, end: stage.triangles.len(), mesh: number, world });
             }
         }
         let used = stage.triangles.iter().flatten().chain(stage.lines.iter().flatten());

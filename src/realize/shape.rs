@@ -464,7 +464,8 @@ fn place(made: &mut Made, map: &DAffine3) {
 }
 
 /// The greatest factor by which a map stretches a length.
-pub(super) fn stretch(matrix: &DMat3) -> f64 {
+#[must_use]
+pub fn stretch(matrix: &DMat3) -> f64 {
     let columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
     let skew: f64 = [(0, 1), (1, 2), (2, 0)].iter().map(|(a, b)| columns[*a].dot(columns[*b]).abs()).sum();
     let longest = columns.iter().map(|column| column.length()).fold(0.0, f64::max);

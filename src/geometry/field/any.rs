@@ -298,6 +298,24 @@ impl AnyField {
         }
     }
 
+    /// Whether its values are known not to jump, whatever their bounds say: those of some bodies are chosen between two
+    /// distances that agree where the choice changes.
+    #[must_use]
+    pub fn is_continuous(&self) -> bool {
+        match self {
+            Self::Primitive(_) | Self::Skeleton(_) | Self::Quadric(_) => true,
+            Self::Formula(_) => false,
+            Self::Joined(joined) => joined.of.iter().all(Self::is_continuous),
+            Self::Sum(sum) => sum.of.iter().all(|(_, field)| field.is_continuous()),
+            Self::Placed(placed) => placed.of.is_continuous(),
+            Self::Perturbed(perturbed) => {
+                perturbed.base.is_continuous()
+                    && perturbed.bumps.iter().all(|bump| bump.field.is_continuous())
+            }
+            Self::Skin { of, .. } | Self::Grown { of, .. } => of.is_continuous(),
+        }
+    }
+
     /// A box that holds the surface and all that is inside of it; none where no such box is known.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {

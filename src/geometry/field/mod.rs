@@ -10,6 +10,7 @@ mod join;
 mod primitive;
 pub mod quadric;
 mod relief;
+mod sheet;
 mod skeleton;
 #[cfg(test)]
 mod tests;
@@ -22,6 +23,7 @@ pub use join::{Blend, Join};
 pub use primitive::Primitive;
 pub use quadric::Quadric;
 pub use relief::{Relief, ReliefBump, Zone};
+pub use sheet::Sheet;
 pub use skeleton::{Potential, Skeleton};
 pub use tree::{Joined, Placed, Sum};
 

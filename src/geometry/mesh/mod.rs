@@ -26,7 +26,7 @@ pub mod sight;
 pub mod texels;
 pub mod topology;
 mod transform;
-mod tree;
+pub(crate) mod tree;
 pub mod triangulate;
 pub mod weld;
 mod wire;

@@ -6,7 +6,7 @@ use super::index;
 use crate::geometry::number::Bounds;
 
 /// A tree of boxes over triangles in the order of their middles.
-pub(super) struct Tree {
+pub(crate) struct Tree {
     /// Boxes, level by level from the root: node k has children 2 k + 1 and 2 k + 2.
     nodes: Vec<Bounds>,
     boxes: Vec<Bounds>,
@@ -18,7 +18,7 @@ pub(super) struct Tree {
 const LEAF: usize = 4;
 
 impl Tree {
-    pub(super) fn new(points: &[DVec3], triangles: &[[u32; 3]]) -> Self {
+    pub(crate) fn new(points: &[DVec3], triangles: &[[u32; 3]]) -> Self {
         let boxes: Vec<Bounds> = triangles
             .iter()
             .map(|triangle| Bounds::of_points(triangle.map(|corner| points[corner as usize])))
@@ -104,7 +104,7 @@ impl Tree {
     }
 
     /// The triangle with the least of some distance, which is never less than that to its box; the first of several.
-    pub(super) fn least(&self, point: DVec3, distance: impl Fn(u32) -> f64) -> Option<(u32, f64)> {
+    pub(crate) fn least(&self, point: DVec3, distance: impl Fn(u32) -> f64) -> Option<(u32, f64)> {
         let mut best: Option<(u32, f64)> = None;
         let mut stack = [(0_usize, 0.0_f64); 64];
         let mut depth = 1;

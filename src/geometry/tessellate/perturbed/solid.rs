@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::net::{NEAR_CENTER, NoSolid, ball};
 use super::{NetBase, PerturbedFace, PerturbedNet, PerturbedSkin};
-use crate::geometry::field::{AnyField, Blend, Join, Joined, Primitive, Quadric, Relief, ReliefBump};
+use crate::geometry::field::{AnyField, Blend, Join, Joined, Primitive, Quadric, Relief, ReliefBump, Sheet};
 use crate::geometry::number::Bounds;
 use crate::geometry::tessellate::field::FieldSurface;
 
@@ -107,4 +107,34 @@ fn enclosed(
     });
     let bumps: Vec<ReliefBump> = net.bumps.iter().map(|bump| bump.bump.clone()).collect();
     Ok((Relief::on(base, &bumps), all))
+}
+
+impl PerturbedSkin {
+    /// Its surface as that of fields: of its body, or face by face between the walls of the rays; none where a face is not
+    /// convex.
+    #[must_use]
+    pub fn sheets(&self) -> Option<Vec<Sheet>> {
+        match &self.solid {
+            Some(body) => Some(vec![Sheet::whole(body.field.clone(), body.within)]),
+            None => self.faces.iter().map(between_walls).collect(),
+        }
+    }
+}
+
+/// The surface of one face: between the walls of its rays, and between the numbers of rays that it does not leave.
+fn between_walls(face: &PerturbedFace) -> Option<Sheet> {
+    if !face.is_convex() {
+        return None;
+    }
+    let walls = face.sides().map(|[from, to]| half_space(face.rays.wall(from, to), face.rays.foot(from)));
+    let (low, high) = face.reach;
+    let middle = glam::DVec2::ZERO;
+    let axis = face.rays.direction(middle) / face.rays.stretch();
+    let ends =
+        [half_space(-axis, face.rays.point(middle, low)), half_space(axis, face.rays.point(middle, high))];
+    Some(Sheet {
+        field: face.relief.field(),
+        inside: walls.chain(ends).collect(),
+        bounds: face.rays.block(face.rectangle(), face.reach),
+    })
 }
