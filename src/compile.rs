@@ -71,6 +71,8 @@ pub struct Options {
     pub keep: Option<Arc<dyn Keep>>,
     /// Where it is noted what each shape took.
     pub log: Option<Arc<WorkLog>>,
+    /// Let pictures stand in files of their own where the document says so. Who looks at one file alone leaves them in it.
+    pub beside: bool,
     /// For whom files are; where empty, for whom the document says, and without that, for all.
     pub profiles: Vec<Profile>,
 }
@@ -82,6 +84,8 @@ pub struct Compiled {
     pub bytes: Vec<u8>,
     /// Name of the file.
     pub file: String,
+    /// Names and bytes of the pictures that stand beside it.
+    pub pictures: Vec<(String, Vec<u8>)>,
     /// For whom it is.
     pub profile: Profile,
     /// The level of detail that it shows, 0 for the finest.
@@ -282,7 +286,13 @@ impl Made<'_> {
         let Self { built, options, .. } = *self;
         let checked = scene::check::check(&scene).map_err(|error| vec![unwritable(&error, built)])?;
         let file = file_name(options, profile, level);
-        let written = gltf::write(checked, profile, options.measure || options.origins || options.deviations);
+        let form = gltf::Form {
+            profile,
+            anchors: options.measure || options.origins || options.deviations,
+            beside: (options.beside && texture::beside(self.spec, profile))
+                .then(|| file.trim_end_matches(".glb").to_owned()),
+        };
+        let written = gltf::write(checked, &form);
         let sources =
             if options.exact.is_some() { exact::sources(built, &scene, shapes) } else { Vec::new() };
         let meshes: Vec<usize> = scene.meshes.iter().map(|mesh| mesh.geometry).collect();
@@ -315,17 +325,8 @@ impl Made<'_> {
         };
         let origins = options.origins.then(|| Origins::new((built, shapes), meshes, &written));
         let warnings = self.document.diagnostics(warnings);
-        Ok(Compiled {
-            bytes: written.bytes,
-            file,
-            profile,
-            level,
-            report,
-            origins,
-            deviations,
-            sources,
-            warnings,
-        })
+        let (bytes, pictures) = (written.bytes, written.pictures);
+        Ok(Compiled { bytes, file, pictures, profile, level, report, origins, deviations, sources, warnings })
     }
 }
 

@@ -47,6 +47,21 @@ fn a_folder_is_baked_with_all_that_it_reads() {
     assert_eq!(done.module, out.join("assets.rs"));
 }
 
+#[test]
+fn pictures_beside_files_are_written_and_come_from_the_cache() {
+    let label = "[shape.a]\nmaterial = \"m\"\n[shape.a.box]\nsize = [1, 1, 1]\n[material.m]\ncolor-texture = \"label.png\"\n[output.textures]\nbeside = true";
+    let (folder, assets, out) = project(&[("crate.toml", label)]);
+    let grey = kiln::import::image::Pixels { width: 2, height: 2, rgba: vec![[90, 90, 90, 255]; 4] };
+    let picture = kiln::import::image::png(&grey, false);
+    fs::write(assets.join("label.png"), &picture).expect("written");
+    let build = Build::new(&assets).out_dir(&out).cache(folder.path().join("cache"), 1 << 20);
+    for _ in 0..2 {
+        build.bake().expect("all is well");
+        assert_eq!(fs::read(out.join("crate.label.png")).expect("it is there"), picture);
+        fs::remove_file(out.join("crate.label.png")).expect("it is there");
+    }
+}
+
 /// What is the same is not touched, so that nothing that depends on it is built again.
 #[test]
 fn unchanged_files_keep_their_times() {

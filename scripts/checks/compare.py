@@ -81,6 +81,8 @@ OF_PROPERTIES = "INCOMPLETE_EXTENSION_SUPPORT at /animations/"
 OF_ANISOTROPY = re.compile(
     r"UNUSED_(MESH_TANGENT|OBJECT) at /meshes/\d+/primitives/\d+/attributes/T(ANGENT|EXCOORD_0):"
 )
+# It says of pictures beside a `.glb` that they are beside it.
+OF_PICTURES = "URI_GLB at /images/"
 # What a level of detail has in common with the finest.
 LIKE_THE_FINEST = ("closed", "manifold", "components", "euler")
 # Directions of bytes are of unit length within what rounding three of them takes, on an octahedron or not.
@@ -171,12 +173,14 @@ def compare(asset: str, report: Facts, measured: list[Measured]) -> list[Finding
 
 
 def expected(report: Facts, totals: Facts) -> Facts:
-    """The totals without what the validator must say of a profile, levels, properties, lightmaps and anisotropy."""
+    """The totals without what the validator must say of a profile, levels, properties, lightmaps and looks."""
     known = EXPECTED.get(report.get("profile", "core"), ())
     if any(len(chain) > 1 for chain in report.get("lods", {}).values()):
         known += OF_LEVELS
     if any(clip.get("properties") for clip in report.get("clips", {}).values()):
         known += (OF_PROPERTIES,)
+    if report["file"].get("pictures"):
+        known += (OF_PICTURES,)
     told = totals.get("validator-messages", [])
     left = [message for message in told if not message.startswith(known)]
     if any(shape.get("lightmap") for shape in report["shapes"].values()):

@@ -186,4 +186,13 @@ function drop(document, carriers) {
 
 await MeshoptDecoder.ready;
 const [folder, ...files] = process.argv.slice(2);
-for (const file of files) fs.writeFileSync(path.join(folder, path.basename(file)), unpack(fs.readFileSync(file)));
+for (const file of files) {
+  const bytes = fs.readFileSync(file);
+  fs.writeFileSync(path.join(folder, path.basename(file)), unpack(bytes));
+  // Pictures beside the file are found beside it again.
+  for (const { uri } of split(bytes).document.images ?? [])
+    if (uri !== undefined && !uri.startsWith('data:')) {
+      const name = decodeURIComponent(uri);
+      fs.copyFileSync(path.join(path.dirname(file), name), path.join(folder, name));
+    }
+}

@@ -10,6 +10,7 @@ from collections import deque
 from functools import cached_property
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
+from urllib.parse import unquote
 
 import numpy as np
 from blake3 import blake3
@@ -38,6 +39,7 @@ def measure(path: Path) -> finding.Measured:
     totals["bounds"] = world_bounds(document)
     totals["required-extensions"] = document.json.get("extensionsRequired", [])
     totals["used-extensions"] = document.json.get("extensionsUsed", [])
+    totals["pictures"] = [unquote(one["uri"]) for one in document.json.get("images", []) if "uri" in one]
     shapes = {mesh.name: shape(mesh) for mesh in document.meshes}
     nodes = {name: world.T.ravel().tolist() for name, world in document.worlds.items()}
     totals["weight-faults"] = played.weight_faults(document)

@@ -104,6 +104,7 @@ impl Baker<'_> {
                 name: task.name().to_owned(),
                 path: task.path.clone(),
                 no_report: !build.report,
+                beside: true,
                 profiles: self.profiles.clone(),
                 keep: self.cache.map(|cache| Arc::clone(cache) as Arc<dyn Keep>),
                 ..Options::default()
@@ -184,7 +185,8 @@ impl Output {
             let bounds = &report.totals.bounds;
             facts = Facts { bounds: Some([bounds.min, bounds.max]), triangles: report.totals.triangles };
         }
-        let files = std::iter::once((compiled.file.clone(), compiled.bytes)).chain(report_file).collect();
+        let written = std::iter::once((compiled.file.clone(), compiled.bytes)).chain(report_file);
+        let files = written.chain(compiled.pictures).collect();
         Ok(Self { folder: folder(task), file: compiled.file, files, facts })
     }
 

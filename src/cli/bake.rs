@@ -188,6 +188,7 @@ impl Worker<'_> {
             name: task.name().to_owned(),
             path: task.path.clone(),
             no_report: self.bake.no_report,
+            beside: true,
             measure: self.bake.measure,
             keep: self.cache.clone().map(|cache| cache as Arc<dyn Keep>),
             profiles: self.bake.profile.clone(),

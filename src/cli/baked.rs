@@ -9,11 +9,8 @@ use crate::report::{DeviationFacts, Kind, Report, ShapeFacts};
 /// An asset with the bytes of its files. Its line is what follows its path.
 pub(crate) fn baked(spec: &str, compiled: Compiled) -> std::io::Result<(Baked, Vec<Vec<u8>>)> {
     let line = line(&compiled);
-    let (names, report_text): (Vec<String>, Option<Vec<u8>>) = match compiled.report_file()? {
-        Some((name, text)) => (vec![compiled.file.clone(), name], Some(text)),
-        None => (vec![compiled.file.clone()], None),
-    };
-    let Compiled { bytes, file, profile, report, warnings, .. } = compiled;
+    let report_file = compiled.report_file()?;
+    let Compiled { bytes, file, pictures, profile, report, warnings, .. } = compiled;
     let facts = json!({
         "asset": null,
         "spec": spec,
@@ -23,7 +20,8 @@ pub(crate) fn baked(spec: &str, compiled: Compiled) -> std::io::Result<(Baked, V
         "triangles": report.as_ref().map(|report| report.totals.triangles),
         "deviation": report.as_ref().and_then(worst),
     });
-    let all: Vec<Vec<u8>> = std::iter::once(bytes).chain(report_text).collect();
+    let written = std::iter::once((file.clone(), bytes)).chain(report_file).chain(pictures);
+    let (names, all): (Vec<String>, Vec<Vec<u8>>) = written.unzip();
     let files = names.iter().zip(&all).map(|(name, bytes)| OutputFile::of(name, bytes)).collect();
     Ok((Baked { file, line, facts, files, warnings: warnings.into_vec() }, all))
 }

@@ -2,7 +2,7 @@
 //!
 //! Promise: each document's own step, with all files that it is made of as they are now. An include that is added later
 //! changes the plan; `bake --depfile` tells of it in the step itself. Not promised: levels of detail in files of their own,
-//! of which some may turn out to be none.
+//! of which some may turn out to be none, and pictures beside files, of which some may not be shown.
 
 use std::fmt::Write as _;
 use std::path::Path;

@@ -9,7 +9,7 @@ use crate::language::source::Files;
 use crate::realize;
 
 /// The names of the files that a document certainly becomes, without making them; levels of detail in files of their own are
-/// not among them, for some may turn out to be none. All files that a bake would read are read.
+/// not among them, for some may turn out to be none, nor pictures beside files. All files that a bake would read are read.
 ///
 /// # Errors
 /// Everything that is wrong with the document before its surfaces are cut.

@@ -34,6 +34,12 @@ pub(super) fn fit(scene: &mut Scene, spec: &Spec, profile: Profile) -> Result<()
     if broken.is_empty() { Ok(()) } else { Err(broken) }
 }
 
+/// Whether the pictures of a profile's files stand beside them.
+pub(super) fn beside(spec: &Spec, profile: Profile) -> bool {
+    let own = spec.output.textures.as_ref().and_then(|asked| asked.value.beside.as_ref());
+    own.and_then(|beside| beside.of(|name| profile_of(name) == profile)).is_some_and(|beside| beside.value)
+}
+
 /// What each picture is for: a color where any material shows it as one.
 fn uses(scene: &Scene) -> Vec<(Meaning, [Edge; 2])> {
     let mut uses = vec![(Meaning::Data, [Edge::Repeat; 2]); scene.images.len()];

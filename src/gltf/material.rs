@@ -1,5 +1,7 @@
 //! Materials, textures, samplers and images.
 
+use std::fmt::Write as _;
+
 use gltf::json::image::{Image, MimeType};
 use gltf::json::material::{
     AlphaCutoff, AlphaMode as JsonAlphaMode, EmissiveFactor, Material as JsonMaterial, NormalTexture,
@@ -15,8 +17,16 @@ use crate::geometry::mesh;
 use crate::geometry::number::single;
 use crate::scene::{AlphaMode, Filter, ImageHandle, ImageKind, Material, Scene, Texture, Wrap};
 
-/// Writes the images, equal ones once; for each of the scene its index in the file.
-pub(super) fn images(root: &mut Root, binary: &mut Binary, scene: &Scene) -> Vec<u32> {
+/// The beginning of the names of files of pictures, and those files.
+pub(super) type Beside<'a> = (&'a str, &'a mut Vec<(String, Vec<u8>)>);
+
+/// Writes the images, equal ones once, into the file or beside it; for each of the scene its index in the file.
+pub(super) fn images(
+    root: &mut Root,
+    binary: &mut Binary,
+    scene: &Scene,
+    mut beside: Option<Beside<'_>>,
+) -> Vec<u32> {
     let mut places: Vec<u32> = Vec::with_capacity(scene.images.len());
     for (number, image) in scene.images.iter().enumerate() {
         let before = &scene.images[..number];
@@ -26,23 +36,56 @@ pub(super) fn images(root: &mut Root, binary: &mut Binary, scene: &Scene) -> Vec
             continue;
         }
         places.push(mesh::index(root.images.len()));
-        let start = binary.start();
-        binary.bytes.extend_from_slice(&image.bytes);
-        let view = binary.view(root, start, None, Content::Picture);
-        let mime = match image.kind {
-            ImageKind::Png => "image/png",
-            ImageKind::Jpeg => "image/jpeg",
+        let (mime, end) = match image.kind {
+            ImageKind::Png => ("image/png", "png"),
+            ImageKind::Jpeg => ("image/jpeg", "jpg"),
+        };
+        let (view, uri) = match &mut beside {
+            Some((stem, files)) => {
+                let name = file_name((stem, &image.name, end), files);
+                let uri = address(&name);
+                files.push((name, image.bytes.to_vec()));
+                (None, Some(uri))
+            }
+            None => {
+                let start = binary.start();
+                binary.bytes.extend_from_slice(&image.bytes);
+                (Some(binary.view(root, start, None, Content::Picture)), None)
+            }
         };
         root.push(Image {
-            buffer_view: Some(view),
+            buffer_view: view,
             mime_type: Some(MimeType(mime.to_owned())),
             name: Some(image.name.clone()),
-            uri: None,
+            uri,
             extensions: None,
             extras: None,
         });
     }
     places
+}
+
+/// A name that no picture before has, as file systems tell names that leave case alone.
+fn file_name((stem, image, end): (&str, &str, &str), before: &[(String, Vec<u8>)]) -> String {
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
+    let image: String = image.chars().map(|letter| if plain(letter) { letter } else { '-' }).collect();
+    let free = |name: &String| before.iter().all(|(other, _)| !other.eq_ignore_ascii_case(name));
+    let numbered = (2_u64..).map(|number| format!("{stem}.{image}-{number}.{end}"));
+    let names = std::iter::once(format!("{stem}.{image}.{end}")).chain(numbered);
+    names.into_iter().find(free).expect("there are more numbers than pictures")
+}
+
+/// A name of a file as a relative reference (RFC 3986, section 2.3).
+fn address(name: &str) -> String {
+    let mut text = String::with_capacity(name.len());
+    for byte in name.bytes() {
+        if byte.is_ascii_alphanumeric() || b"-._~".contains(&byte) {
+            text.push(byte.into());
+        } else {
+            let _ = write!(text, "%{byte:02X}");
+        }
+    }
+    text
 }
 
 /// Writes the materials; index k of the scene is index k of the file.

@@ -35,5 +35,6 @@ pub use read::{Geometry, Indices, Lines, Part, PositionBytes, Read, ReadError, r
 pub use read_morph::ReadTarget;
 pub use read_motion::{ReadAnimation, ReadChannel, ReadInfluences, ReadProperty, ReadSkin};
 pub use write::{
-    WriteError, Written, WrittenAnimation, WrittenGeometry, WrittenLevel, WrittenTarget, container, write,
+    Form, WriteError, Written, WrittenAnimation, WrittenGeometry, WrittenLevel, WrittenTarget, container,
+    write,
 };

@@ -29,6 +29,8 @@ use crate::scene::{Checked, Collider, Geometry, Grid, LevelUse, PropertyChannel}
 pub struct Written {
     /// The `.glb` file.
     pub bytes: Vec<u8>,
+    /// Names and bytes of the pictures that stand beside it.
+    pub pictures: Vec<(String, Vec<u8>)>,
     /// For each geometry of the scene what is known of it.
     pub geometries: Vec<WrittenGeometry>,
     /// For each animation what is known of it.
@@ -106,13 +108,25 @@ pub enum WriteError {
     TooLarge(u64),
 }
 
-/// Writes a scene for a profile; a scene on a grid for one that is quantized. With `anchors`, the places of all vertices on their sources are kept beside the bytes.
+/// How a scene is written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Form {
+    /// For whom.
+    pub profile: Profile,
+    /// Whether the places of all vertices on their sources are kept beside the bytes.
+    pub anchors: bool,
+    /// Where pictures stand beside the file: what their names begin with.
+    pub beside: Option<String>,
+}
+
+/// Writes a scene; a scene on a grid for a profile that is quantized.
 ///
 /// Cost: one pass over the scene; the bytes are allocated once.
 ///
 /// # Errors
 /// When the file would pass 4 GiB.
-pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Written, WriteError> {
+pub fn write(checked: Checked<'_>, form: &Form) -> Result<Written, WriteError> {
+    let Form { profile, anchors, ref beside } = *form;
     let scene = checked.scene();
     let mut writer = Writer {
         root: Root { asset: asset(scene.grid), ..Root::default() },
@@ -136,7 +150,9 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
             (triangles, lines, (writer.binary.bytes.len() - before) as u64)
         })
         .collect();
-    let images = material::images(&mut writer.root, &mut writer.binary, scene);
+    let mut pictures = Vec::new();
+    let place = beside.as_deref().map(|stem| (stem, &mut pictures));
+    let images = material::images(&mut writer.root, &mut writer.binary, scene, place);
     material::materials(&mut writer.root, scene, &images);
     for mesh in &scene.meshes {
         let (triangles, lines, _) = &shared[mesh.geometry];
@@ -192,6 +208,7 @@ pub fn write(checked: Checked<'_>, profile: Profile, anchors: bool) -> Result<Wr
     let collider_meshes = scene.meshes.len()..writer.root.meshes.len();
     Ok(Written {
         bytes: writer.finish()?,
+        pictures,
         collider_meshes,
         geometries,
         animations,

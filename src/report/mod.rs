@@ -113,6 +113,8 @@ pub struct FileFacts {
     pub blake3: String,
     /// Extensions of the format that it uses, in its order.
     pub used_extensions: Vec<String>,
+    /// Names of the pictures that stand beside it.
+    pub pictures: Vec<String>,
 }
 
 /// A grid of positions.
@@ -334,6 +336,7 @@ pub fn measure(
             bytes: written.bytes.len() as u64,
             blake3: blake3::hash(&written.bytes).to_hex().to_string(),
             used_extensions: file.root.extensions_used.clone(),
+            pictures: written.pictures.iter().map(|(name, _)| name.clone()).collect(),
         },
         totals: totals(&file, &facts, written, &nodes),
         lods: levels::levels(&file, written, &facts),

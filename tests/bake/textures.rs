@@ -16,17 +16,23 @@ fn stripes(one: u8, other: u8) -> Vec<u8> {
 }
 
 fn made(text: &str, profiles: &[Profile]) -> Result<Vec<Compiled>, String> {
+    made_by(text, Options { profiles: profiles.to_vec(), ..Options::default() })
+}
+
+fn made_by(text: &str, options: Options) -> Result<Vec<Compiled>, String> {
     let files = MemoryFiles::new()
         .with("spec.toml", text)
         .with("color.png", stripes(0, 255))
         .with("rough.png", stripes(10, 10))
         .with("metal.png", stripes(200, 200))
+        .with("other/Color.png", stripes(1, 2))
+        .with("ein Bild.png", stripes(3, 4))
         .with("occlusion.png", {
             let rgba = (0..128).map(|_| [90, 0, 0, 255]).collect();
             png(&Pixels { width: 16, height: 8, rgba }, false)
         });
     let document = Document::load("spec.toml", &files).unwrap_or_else(|found| panic!("{found}\n{text}"));
-    let options = Options { name: "asset".to_owned(), profiles: profiles.to_vec(), ..Options::default() };
+    let options = Options { name: "my asset".to_owned(), ..options };
     compile_profiles(&document, &files, &options).map_err(|found| found.to_string())
 }
 
@@ -83,4 +89,33 @@ fn what_is_not_there_is_full() {
     let text = format!("{BOX}[material.m]\nmetallic = 1\nmetallic-texture = \"metal.png\"\n");
     let compiled = made(&text, &[Profile::Core]).expect("it bakes").remove(0);
     assert_eq!(pictures(&compiled)[0].1.rgba[7], [255, 255, 200, 255]);
+}
+
+const BESIDE: &str = "[shape.a]\nmaterial = \"m\"\n[shape.a.box]\nsize = [1, 1, 1]\n[material.m]\ncolor-texture = \"color.png\"\nemissive-texture = \"other/Color.png\"\nmetallic-roughness-texture = \"ein Bild.png\"\nsheen = { color-texture = \"color.png\" }\n";
+
+/// Names keep to what every file system and address takes, and each picture has one of its own.
+#[test]
+fn pictures_stand_beside_the_file_under_names_of_their_own() {
+    let text = format!("{BESIDE}[output.textures]\nbeside = {{ core = true, unity = true }}\n");
+    let profiles = vec![Profile::Core, Profile::Unity, Profile::Web];
+    let files = made_by(&text, Options { profiles, beside: true, ..Options::default() }).expect("it bakes");
+    let within = made_by(&text, Options::default()).expect("it bakes").remove(0);
+    assert!(within.pictures.is_empty(), "who looks at one file alone has all in it");
+    let wanted = [stripes(0, 255), stripes(1, 2), stripes(3, 4)];
+    for (file, stem) in files.iter().zip(["my asset", "my asset.unity"]) {
+        let glb = Glb::new(&file.bytes);
+        let names = ["color.png", "Color-2.png", "ein-Bild.png"].map(|name| format!("{stem}.{name}"));
+        let found: Vec<(String, Vec<u8>)> = file.pictures.clone();
+        let order: Vec<String> = found.iter().map(|(name, _)| name.clone()).collect();
+        assert_eq!(order.len(), 3, "one that two materials' parts show is one: {order:?}");
+        for (image, (name, bytes)) in glb.list("images").iter().zip(&found) {
+            assert_eq!(image["uri"], name.replace(' ', "%20"));
+            assert!(image.get("bufferView").is_none() && image["mimeType"] == "image/png");
+            let place =
+                names.iter().position(|own| own == name).unwrap_or_else(|| panic!("{name}: {names:?}"));
+            assert_eq!(*bytes, wanted[place], "{name}");
+        }
+    }
+    assert!(files[0].bytes.len() + 3 * wanted[0].len() / 2 < within.bytes.len() + 600);
+    assert!(files[2].pictures.is_empty() && Glb::new(&files[2].bytes).list("images")[0].get("uri").is_none());
 }

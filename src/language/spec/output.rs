@@ -111,6 +111,9 @@ table! {
         /// Whether PNG files are written anew in the shortest of many ways, where that is shorter. Nothing of them is lost; it
         /// takes a second for each million pixels.
         compress: Sp<bool> = false;
+        /// Whether pictures are files of their own beside the `.glb`, named `FILE.PICTURE.png` or `.jpg`, rather than within it; so
+        /// a tool can change or compress them, and a game load them by itself. May be one for each profile.
+        beside: Option<ByProfile<bool>>;
     }
 }
 
