@@ -141,11 +141,71 @@ fn lies_on(segment: [DVec3; 2], triangle: [DVec3; 3]) -> bool {
     inside(from) || inside(to) || (0..3).any(meets)
 }
 
+/// The end of a segment in which two triangles cross.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pierced {
+    /// Where.
+    pub point: DVec3,
+    /// Whose side runs through the other triangle: 0 is the first.
+    pub triangle: usize,
+    /// Which side: that from this corner to the next.
+    pub side: usize,
+}
+
+/// The segment in which two triangles run through each other: which sides end it is decided exactly, with corners on a plane
+/// counted to its upper side. None where they touch only, or lie in one plane.
+#[must_use]
+pub fn segment(p: [DVec3; 3], q: [DVec3; 3]) -> Option<[Pierced; 2]> {
+    let mut ends: Vec<Pierced> = Vec::new();
+    for (triangle, (own, other)) in [(p, q), (q, p)].into_iter().enumerate() {
+        let heights = own.map(|corner| side(other, corner));
+        for k in 0..3 {
+            let (from, to) = (heights[k], heights[(k + 1) % 3]);
+            if (from >= 0.0) == (to >= 0.0) || !pierces([own[k], own[(k + 1) % 3]], other) {
+                continue;
+            }
+            let point = own[k].lerp(own[(k + 1) % 3], from / (from - to));
+            ends.push(Pierced { point, triangle, side: k });
+        }
+    }
+    // Where a side meets a side there are more than two, in no more than two places.
+    let first = *ends.first()?;
+    let away = |end: &Pierced| end.point.distance_squared(first.point);
+    let last = *ends.iter().max_by(|a, b| away(a).total_cmp(&away(b)))?;
+    (last.point != first.point).then_some([first, last])
+}
+
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
 
-    use super::{PAIRS, crossings};
+    use super::{PAIRS, Pierced, crossings, segment};
+
+    #[test]
+    fn a_segment_ends_where_sides_run_through_the_other_triangle() {
+        let triangle = |list: [[f64; 3]; 3]| list.map(DVec3::from_array);
+        let floor = triangle([[-2.0, 0.0, -2.0], [4.0, 0.0, -2.0], [-2.0, 0.0, 4.0]]);
+        // From below to above: the left side rises through the floor at x = -0.5, the right one at x = 0.5.
+        let wall = triangle([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]]);
+        let ends = segment(floor, wall).expect("they cross");
+        let mut along: Vec<f64> = ends.iter().map(|end| end.point.x).collect();
+        along.sort_by(f64::total_cmp);
+        assert_eq!(along, [-0.5, 0.5]);
+        assert!(ends.iter().all(|Pierced { point, triangle, .. }| *triangle == 1 && point.y == 0.0));
+        // A wall that reaches over the border of the floor ends there.
+        let long = wall.map(|corner| DVec3::new(4.0 * corner.x, corner.y, corner.z));
+        let ends = segment(floor, long).expect("they cross");
+        let far = ends.iter().map(|end| end.point.x).fold(f64::NEG_INFINITY, f64::max);
+        assert!(
+            (far - 2.0).abs() < 1e-14,
+            "the slanted side of the floor crosses the wall at x = 2, not {far}"
+        );
+        // Beside it, above it, and with a corner that only touches it there is none.
+        for moved in [DVec3::X * 9.0, DVec3::Y * 1.5, DVec3::Y] {
+            assert_eq!(segment(floor, wall.map(|corner| corner + moved)), None);
+        }
+        assert_eq!(segment(floor, floor.map(|corner| corner + DVec3::X * 0.1)), None, "in one plane");
+    }
 
     fn places(list: &[[f64; 3]]) -> Vec<DVec3> {
         list.iter().map(|place| DVec3::from_array(*place)).collect()

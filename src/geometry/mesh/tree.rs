@@ -51,7 +51,7 @@ impl Tree {
     }
 
     /// All triangles of greater index whose boxes meet that of a triangle, until `with` says that it is enough.
-    pub(super) fn visit(&self, triangle: u32, mut with: impl FnMut(u32) -> bool) {
+    pub(crate) fn visit(&self, triangle: u32, mut with: impl FnMut(u32) -> bool) {
         let own = &self.boxes[triangle as usize];
         self.visit_where(|bounds| meet(own, bounds), |other| other <= triangle || with(other));
     }

@@ -16,6 +16,8 @@ pub enum Kind {
     Rim,
     /// Where it bends sharply.
     Crease,
+    /// Where two surfaces run through each other.
+    Intersection,
     /// Where one material ends and another begins.
     Border,
     /// A line of the file itself.
@@ -46,9 +48,8 @@ struct Side {
     vertices: [u32; 2],
 }
 
-/// The edges that are drawn.
-pub(super) fn edges(stage: &Stage, camera: &Camera) -> Vec<Edge> {
-    let points = points(stage);
+/// The edges that are drawn, by the numbers of the points of vertices.
+pub(super) fn edges(stage: &Stage, camera: &Camera, points: &[u32]) -> Vec<Edge> {
     let place = |vertex: u32| stage.vertices[vertex as usize].point;
     let mut sides: BTreeMap<[u32; 2], Vec<Side>> = BTreeMap::new();
     for (triangle, corners) in (0_u32..).zip(&stage.triangles) {
@@ -122,7 +123,7 @@ fn sharp(stage: &Stage, one: &Side, other: &Side, cosine: f64) -> bool {
 }
 
 /// For each vertex the number of its point: vertices that stand at the same place share one.
-fn points(stage: &Stage) -> Vec<u32> {
+pub(super) fn points(stage: &Stage) -> Vec<u32> {
     let mut known: BTreeMap<[u64; 3], u32> = BTreeMap::new();
     let number = |vertex: &crate::preview::stage::Vertex| {
         // Minus zero is zero.

@@ -1,16 +1,18 @@
 //! Line drawings: what is seen of the edges of a stage, and what is hidden by how much.
 //!
-//! Promise: lines are those of the triangles (outlines, creases, rims, borders of materials) and the lines of the file
-//! itself; each is cut exactly where a triangle begins or ceases to hide it, and knows how many hide it: A. Appel's
-//! quantitative invisibility (The Notion of Quantitative Invisibility and the Machine Rendering of Solids, ACM National
-//! Conference, 1967). Appel carries the number along contours, from crossing to crossing; here it is counted anew for each
-//! edge, from the intervals of all triangles in front of it, so that open, touching and crossing surfaces are right too.
-//! No promise: where triangles pierce each other without an edge, no line is drawn.
+//! Promise: lines are those of the triangles (outlines, creases, rims, borders of materials), those in which triangles run
+//! through each other without an edge, and the lines of the file itself; each is cut exactly where a triangle begins or
+//! ceases to hide it, and knows how many hide it: A. Appel's quantitative invisibility (The Notion of Quantitative
+//! Invisibility and the Machine Rendering of Solids, ACM National Conference, 1967). Appel carries the number along
+//! contours, from crossing to crossing; here it is counted anew for each edge, from the intervals of all triangles in front
+//! of it, so that open, touching and crossing surfaces are right too.
+//! No promise: surfaces that lie on each other, or cross at less than a degree, have no line there.
 //!
 //! Cost: edges, times the triangles over the cells of the picture that they cross.
 
 mod feature;
 mod hidden;
+mod pierce;
 mod trace;
 mod write;
 
@@ -31,7 +33,9 @@ pub struct Drawing {
 /// Draws the lines of a stage.
 #[must_use]
 pub fn draw_lines(stage: &Stage, camera: &Camera) -> Drawing {
-    let edges = feature::edges(stage, camera);
+    let points = feature::points(stage);
+    let mut edges = feature::edges(stage, camera, &points);
+    edges.extend(pierce::edges(stage, camera, &points));
     let pieces = hidden::pieces(stage, camera, &edges);
     Drawing { traces: trace::traces(&pieces) }
 }

@@ -22,7 +22,7 @@ pub struct Ink {
 fn width(kind: Kind) -> f64 {
     match kind {
         Kind::Outline | Kind::Rim => 2.2,
-        Kind::Crease | Kind::Wire => 1.4,
+        Kind::Crease | Kind::Intersection | Kind::Wire => 1.4,
         Kind::Border => 1.0,
     }
 }
@@ -32,6 +32,7 @@ fn name(kind: Kind) -> &'static str {
         Kind::Outline => "outline",
         Kind::Rim => "rim",
         Kind::Crease => "crease",
+        Kind::Intersection => "intersection",
         Kind::Border => "border",
         Kind::Wire => "wire",
     }
