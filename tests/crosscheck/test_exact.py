@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from itertools import pairwise
 from pathlib import Path
@@ -23,7 +24,12 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[2]
 SIZE = 200
-SPECS = sorted(str(path.relative_to(ROOT / "specs").with_suffix("")) for path in (ROOT / "specs").glob("*/*.toml"))
+# Documents without a shape are there for others to include.
+SPECS = sorted(
+    str(path.relative_to(ROOT / "specs").with_suffix(""))
+    for path in (ROOT / "specs").glob("*/*.toml")
+    if re.search(r"^\[(shape|import)\.", path.read_text(encoding="utf-8"), re.MULTILINE)
+)
 # An eye on +z that sees a square of side 4 in parallel lines, or a cone of 40 degrees.
 EYES = {
     "parallel": ("height = 4", 6.0),

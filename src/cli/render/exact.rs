@@ -12,7 +12,6 @@ use crate::cli::arguments::Render;
 use crate::cli::output::Printer;
 use crate::compile::{Options, Source, compile_profiles};
 use crate::geometry::tessellate::Evidence;
-use crate::language::diagnostic::{Code, Severity};
 use crate::preview::asset::Asset;
 use crate::preview::exact::{Exact, Surfaces};
 use crate::preview::{Camera, Look, Picture, Stage, draw_exact};
@@ -20,7 +19,7 @@ use crate::preview::{Camera, Look, Picture, Stage, draw_exact};
 /// The part of a pixel that pieces of surfaces may lie beside them.
 const PART: f64 = 1.0 / 16.0;
 
-/// How much coarser pieces become where there were too many, and how often.
+/// How much coarser pieces become where they cannot be so fine, and how often.
 const COARSER: f64 = 4.0;
 const TRIES: u32 = 4;
 
@@ -80,16 +79,14 @@ impl Surface {
             let options = Options { exact: Some(tolerance), ..options.clone() };
             match compile_profiles(&document, &files, &options) {
                 Ok(compiled) => break compiled,
-                Err(list) => {
-                    let many = [Code::LimitPassed, Code::TooMuchWork];
-                    let mut errors = list.iter().filter(|one| one.severity == Severity::Error);
-                    let limited = errors.all(|one| many.contains(&one.code));
+                // There may be too many pieces, or none so small that a surface is sound; it was at its own tolerance.
+                Err(_) if tries < TRIES => {
                     tries += 1;
-                    if !limited || tries == TRIES {
-                        printer.diagnostics(&list);
-                        return Err((None, Outcome::Errors));
-                    }
                     tolerance *= COARSER;
+                }
+                Err(list) => {
+                    printer.diagnostics(&list);
+                    return Err((None, Outcome::Errors));
                 }
             }
         };
