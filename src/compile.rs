@@ -2,10 +2,12 @@
 
 mod assertion;
 mod baked;
+mod beyond;
 mod collider;
 mod engine;
 mod exact;
 mod file;
+mod joint;
 mod kept;
 mod lod;
 mod motion;
@@ -19,8 +21,10 @@ mod state;
 mod subdivide;
 mod texture;
 
+use beyond::{beyond_bound, beyond_tolerance};
 pub use exact::Source;
 use file::{file_name, same_file};
+pub use joint::LimitedJoint;
 use notice::{noticed, too_coarse};
 pub use origin::Origins;
 pub use planned::{estimated_memory, outputs};
@@ -31,8 +35,7 @@ use std::sync::Arc;
 
 use crate::build::{self, Built};
 use crate::geometry::curve::AnyCurve;
-use crate::geometry::number::{Bounds, single_rounding};
-use crate::geometry::tessellate::{DeformError, Evidence, TessellateError};
+use crate::geometry::tessellate::{DeformError, TessellateError};
 use crate::gltf::Profile;
 use crate::language::Document;
 use crate::language::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -97,6 +100,8 @@ pub struct Compiled {
     /// When that was asked for: for each mesh of the file how far its triangles are from the exact surface, metres, at the
     /// places of [`FAN`](crate::geometry::number::FAN); none for a mesh of surfaces that have no form of their own.
     pub deviations: Vec<Option<Vec<[f32; 13]>>>,
+    /// Its joints that do not turn freely.
+    pub joints: Vec<LimitedJoint>,
     /// When the surfaces themselves were asked for: how that of each mesh of the file is known.
     pub sources: Vec<Source>,
     /// What a person should know though nothing is wrong.
@@ -295,6 +300,7 @@ impl Made<'_> {
         let written = gltf::write(checked, &form);
         let sources =
             if options.exact.is_some() { exact::sources(built, &scene, shapes) } else { Vec::new() };
+        let joints = joint::limited(&built.model, &scene);
         let meshes: Vec<usize> = scene.meshes.iter().map(|mesh| mesh.geometry).collect();
         // From here on the bytes speak for themselves; the scene's memory is needed no more.
         drop(scene);
@@ -326,7 +332,19 @@ impl Made<'_> {
         let origins = options.origins.then(|| Origins::new((built, shapes), meshes, &written));
         let warnings = self.document.diagnostics(warnings);
         let (bytes, pictures) = (written.bytes, written.pictures);
-        Ok(Compiled { bytes, file, pictures, profile, level, report, origins, deviations, sources, warnings })
+        Ok(Compiled {
+            bytes,
+            file,
+            pictures,
+            profile,
+            level,
+            report,
+            origins,
+            deviations,
+            joints,
+            sources,
+            warnings,
+        })
     }
 }
 
@@ -482,59 +500,6 @@ fn refusal(built: &Built, shape: ShapeHandle, error: &RealizeError) -> Diagnosti
     Diagnostic::error(code, format!("shape `{name}` cannot be made: {error}"))
         .at(place(built, shape), "this shape")
         .help(help)
-}
-
-/// Shapes whose bound could not be brought under their tolerance.
-fn beyond_tolerance(scene: &scene::Scene, shapes: &[ShapeHandle], built: &Built) -> Vec<Diagnostic> {
-    let beyond = |(geometry, shape): (&scene::Geometry, &ShapeHandle)| {
-        let tolerance = geometry.tolerance?;
-        let bound = geometry.deviation.bound;
-        let bounds = Bounds::of_points(geometry.mesh.points.iter().copied()).union(geometry.wire.bounds());
-        let rounding = single_rounding(bounds.reach());
-        if bound <= tolerance && bound + rounding > tolerance {
-            return Some(
-                imprecise(&geometry.name, (bound, rounding, tolerance))
-                    .at(place(built, *shape), "this shape"),
-            );
-        }
-        (bound > tolerance * (1.0 + 1e-9)).then(|| {
-            let sampled = if geometry.deviation.evidence == Evidence::Sampled { " (sampled)" } else { "" };
-            let message = format!(
-                "shape `{}` lies up to {bound:.3e} m from the true surface{sampled}, more than its tolerance of {tolerance:.3e} m",
-                geometry.name
-            );
-            Diagnostic::warning(Code::TightBend, message)
-                .at(place(built, *shape), "this shape")
-                .note("where a surface folds, ends in a cusp, or turns sharply beside a corner, more triangles do not come nearer")
-                .help("round or move that place, or write the `tolerance` that is enough for it")
-        })
-    };
-    scene.geometries.iter().zip(shapes).filter_map(beyond).collect()
-}
-
-fn imprecise(name: &str, (bound, rounding, tolerance): (f64, f64, f64)) -> Diagnostic {
-    let message = format!(
-        "shape `{name}` lies up to {:.3e} m from the true surface, {rounding:.3e} m of that by rounding to single precision, more than its tolerance of {tolerance:.3e} m",
-        bound + rounding
-    );
-    Diagnostic::warning(Code::BeyondPrecision, message)
-        .help("model it near the origin and let a node carry it to its place, or write a coarser `tolerance`")
-}
-
-/// Shapes where dense sampling finds more than the bound.
-fn beyond_bound(report: &Report, shapes: &[ShapeHandle], built: &Built) -> Vec<Diagnostic> {
-    let beyond = |((name, facts), shape): ((&String, &report::ShapeFacts), &ShapeHandle)| {
-        let (found, bound) = (facts.deviation.measured?, facts.deviation.bound);
-        (found > bound * (1.0 + 1e-9)).then(|| {
-            let message = format!(
-                "shape `{name}`: dense sampling finds {found:.3e} m from the true surface, more than the bound of {bound:.3e} m"
-            );
-            Diagnostic::warning(Code::TightBend, message)
-                .at(place(built, *shape), "this shape")
-                .help("where a section reaches beyond the center of a bend, or a path crosses itself, the surface folds over itself and distances to it mean little")
-        })
-    };
-    report.shapes.iter().zip(shapes).filter_map(beyond).collect()
 }
 
 fn unwritable(error: &SceneError, built: &Built) -> Diagnostic {

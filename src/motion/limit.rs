@@ -130,8 +130,9 @@ impl Limits {
         DVec3::new(inside(0), inside(1), inside(2))
     }
 
-    /// Of the two triples of angles, whole turns added, the one with the least excess.
-    fn nearest(&self, rotation: DQuat) -> DVec3 {
+    /// The angles of a rotation about x, y and z, degrees: of the two triples, whole turns added, the one with the least excess.
+    #[must_use]
+    pub fn nearest(&self, rotation: DQuat) -> DVec3 {
         let first = self.turned(to_angles(rotation));
         let second = self.turned(DVec3::new(first.x + 180.0, first.y + 180.0, 180.0 - first.z));
         if self.excess(second) < self.excess(first) { second } else { first }
@@ -146,7 +147,9 @@ impl Limits {
         DVec3::new(near(0), near(1), near(2))
     }
 
-    fn excess(&self, angles: DVec3) -> f64 {
+    /// How far angles lie outside, in sum.
+    #[must_use]
+    pub fn excess(&self, angles: DVec3) -> f64 {
         let of = |axis: usize| self.ranges[axis].map_or(0.0, |range| range.excess(angles[axis]));
         of(0) + of(1) + of(2)
     }

@@ -32,7 +32,7 @@ use exact::Exact;
 pub use picture::{Picture, PictureError};
 use raster::{Face, MIDDLE, SIXTEEN, Seen, Tile, Veil, draw};
 use shader::Shader;
-pub use stage::{Eye, Moment, Piece, Stage, StageError, Vertex};
+pub use stage::{Eye, Moment, Piece, Stage, StageError, Vertex, turns};
 
 use crate::geometry::number::count_of;
 

@@ -3,10 +3,10 @@
 //! Source: Khronos Group, glTF 2.0 Specification, 2021, sections 3.7.2.2 (morph targets) and 3.7.3 (skins): a skinned
 //! mesh stands where its joints put it, wherever its node is.
 
-use glam::{DMat3, DMat4, DVec3};
+use glam::{DMat3, DMat4, DQuat, DVec3};
 use thiserror::Error;
 
-use super::asset::{Asset, Lens, Material, Part, changed, see};
+use super::asset::{Asset, Lens, Material, Node, Part, Place, changed, see};
 use super::heat::HeatMap;
 use crate::geometry::number::Bounds;
 
@@ -110,18 +110,7 @@ impl Stage {
     /// # Errors
     /// When there is no clip of the name.
     pub fn new(asset: &Asset, moment: &Moment) -> Result<Self, StageError> {
-        let mut nodes = asset.nodes.clone();
-        let mut materials = None;
-        if let Some(asked) = &moment.clip {
-            let clip =
-                asset.clips.iter().find(|clip| clip.name == *asked).ok_or_else(|| StageError::Clip {
-                    asked: asked.clone(),
-                    clips: asset.clips.iter().map(|clip| clip.name.clone()).collect(),
-                })?;
-            clip.apply(moment.time, &mut nodes);
-            see(clip, moment.time, &mut nodes);
-            materials = Some(changed(asset, clip, moment.time));
-        }
+        let (nodes, materials) = posed(asset, moment)?;
         let mut worlds = vec![DMat4::IDENTITY; nodes.len()];
         let mut open: Vec<(usize, DMat4)> =
             asset.roots.iter().rev().map(|root| (*root, DMat4::IDENTITY)).collect();
@@ -210,6 +199,31 @@ impl Stage {
         }));
         self.lines.extend(part.lines.iter().map(|ends| ends.map(|end| end + base)));
     }
+}
+
+/// The nodes at a moment, and the materials where a clip was asked for.
+fn posed(asset: &Asset, moment: &Moment) -> Result<(Vec<Node>, Option<Vec<Material>>), StageError> {
+    let mut nodes = asset.nodes.clone();
+    let Some(asked) = &moment.clip else { return Ok((nodes, None)) };
+    let clip = asset.clips.iter().find(|clip| clip.name == *asked).ok_or_else(|| StageError::Clip {
+        asked: asked.clone(),
+        clips: asset.clips.iter().map(|clip| clip.name.clone()).collect(),
+    })?;
+    clip.apply(moment.time, &mut nodes);
+    see(clip, moment.time, &mut nodes);
+    Ok((nodes, Some(changed(asset, clip, moment.time))))
+}
+
+/// How each node is turned at a moment, relative to its parent; none where a matrix says where it stands.
+///
+/// # Errors
+/// When there is no clip of the name.
+pub fn turns(asset: &Asset, moment: &Moment) -> Result<Vec<Option<DQuat>>, StageError> {
+    let turn = |node: &Node| match node.place {
+        Place::Parts { rotation, .. } => Some(rotation),
+        Place::Matrix(_) => None,
+    };
+    Ok(posed(asset, moment)?.0.iter().map(turn).collect())
 }
 
 fn finite(vector: DVec3) -> DVec3 {

@@ -9,6 +9,7 @@ import os
 import re
 import shutil
 import socket
+import struct
 import subprocess
 import sys
 import time
@@ -28,6 +29,24 @@ ROOT = Path(__file__).resolve().parents[2]
 THREE = ROOT / "scripts" / "node_modules" / "three"
 BOX = "[shape.s.box]\nsize = [1, 1, 1]\n"
 SECONDS = 30
+ARM = """[shape.s.box]
+size = [0.2, 1, 0.2]
+[node.s]
+shape = "s"
+[skeleton.bones.joint.upper]
+head = [0, -1, 0]
+tail = [0, 0, 0]
+[skeleton.bones.joint.forearm]
+parent = "upper"
+tail = [0, 1, 0]
+limits = { x = [0, 140], y = [0, 0], z = [0, 0] }
+[[clip.curl.track]]
+joint = "forearm"
+path = "rotation"
+axis = "x"
+between = "cubic"
+keys = [{ at = 0, value = 0, slope = 0 }, { at = 1.2, value = 100, slope = 0 }, { at = 2.4, value = 0, slope = 0 }]
+"""
 
 
 @pytest.fixture(scope="module", params=["three.js", "pictures"])
@@ -85,6 +104,13 @@ def test_clips_are_scrubbed_and_played(seen: dict[str, Any]) -> None:
     assert again == early
     assert seen["kept"] == early
     assert seen["played"]
+
+
+def test_joints_are_told_with_their_limits(seen: dict[str, Any]) -> None:
+    assert {row[1] for row in seen["limits"]} == {"-35° to 35°", "-10° to 10°", "-5° to 5°"}
+    rows = [(float(angle.rstrip("°")), float(most.split()[-1].rstrip("°"))) for _, most, angle in seen["limits"]]
+    assert any(angle != 0 for angle, _ in rows)
+    assert all(abs(angle) <= most for angle, most in rows)
 
 
 def test_measures_are_shown_as_colors(seen: dict[str, Any]) -> None:
@@ -195,6 +221,28 @@ def test_the_bytes_are_those_that_are_baked(kiln: Kiln, watched: Watched) -> Non
     (asset,) = watched.state()["assets"]
     assert watched.get(f"/asset?key={asset['key']}") == (200, baked.path.read_bytes())
     assert watched.get("/asset?key=0")[0] == 204
+
+
+def test_angles_of_joints_are_those_of_the_clip(kiln: Kiln) -> None:
+    """A cubic from 0 to 100 degrees and back, without slope where it turns: halfway it is at 50."""
+    kiln.write(ARM)
+    one = start(kiln, "--port", "0")
+    try:
+        (asset,) = one.state()["assets"]
+        (joint,) = asset["joints"]
+        assert (joint["name"], joint["ranges"]) == ("forearm", [[0, 140], [0, 0], [0, 0]])
+        for moment, expected in (("", 0), ("&clip=0&time=0.6", 50), ("&clip=0&time=1.2", 100), ("&clip=7&time=1.2", 0)):
+            status, body = one.get(f"/joints?key={asset['key']}{moment}")
+            assert status == 200
+            (found,) = json.loads(body)
+            assert [axis["axis"] for axis in found["axes"]] == ["x", "y", "z"]
+            angles = [axis["angle"] for axis in found["axes"]]
+            # Keys keep the motion to its tolerance, a millimeter over a bone of a meter.
+            assert angles == pytest.approx([expected, 0, 0], abs=0.1)
+            assert all(axis["within"] for axis in found["axes"])
+        assert one.get("/joints?key=0")[0] == 204
+    finally:
+        one.process.kill()
 
 
 def test_only_loopback_is_listened_on(watched: Watched) -> None:
@@ -312,6 +360,34 @@ def test_ten_clients_hear_of_each_bake(kiln: Kiln, watched: Watched) -> None:
     assert watched.answers()
     slow.close()
     deaf.close()
+
+
+def test_a_page_that_is_closed_in_the_middle_of_a_bake(kiln: Kiln, watched: Watched) -> None:
+    """It goes away while it waits for a bake, or while it takes the bytes of one, without a word: others get both."""
+
+    def asked(path: str) -> socket.socket:
+        connection = socket.create_connection(("127.0.0.1", watched.port), timeout=SECONDS)
+        connection.sendall(f"GET {path} HTTP/1.1\r\nHost: localhost:{watched.port}\r\n\r\n".encode())
+        assert connection.recv(16).startswith(b"HTTP/1.1 200")
+        # What is closed so tells the other side that it broke off, not that it is done.
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        return connection
+
+    page = asked("/news")
+    kiln.write("[shape.s]\nsegments = [900, 600]\n[shape.s.torus]\nradius = 1\ntube-radius = 0.3\n")
+    time.sleep(0.1)
+    assert json.loads(watched.get("/state")[1])["revision"] == 1, "it is still being baked"
+    page.close()
+    state = watched.state(2)
+    assert state["good"]
+    path = f"/asset?key={state['assets'][0]['key']}"
+    for _ in range(3):
+        asked(path).close()
+    status, body = watched.get(path)
+    assert (status, body[:4]) == (200, b"glTF")
+    kiln.write(BOX)
+    assert watched.state(3)["good"]
+    assert watched.answers()
 
 
 def test_nothing_is_done_while_nothing_changes(kiln: Kiln, watched: Watched) -> None:

@@ -189,6 +189,10 @@ async function motion(browser) {
   await page.locator('#clip').selectOption({ index: 1 });
   found.duration = Number(await page.locator('#time').getAttribute('max'));
   found.scrubbed = [await scrub(0.3), await scrub(0.6), await scrub(0.3)];
+  await page.locator('#angles').check();
+  await page.waitForFunction(() => document.querySelectorAll('#limits tr').length > 0, null, { timeout: SECONDS * 1000 });
+  found.limits = await page.locator('#limits tr').evaluateAll((all) => all.map((row) => [...row.cells].map((cell) => cell.textContent)));
+  await page.locator('#angles').uncheck();
   found.heats = { list: await page.locator('#heat option').allInnerTexts() };
   for (const name of ['curvature', 'deviation', 'texel-density', '(materials)']) {
     await page.locator('#heat').selectOption(name);

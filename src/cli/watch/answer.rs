@@ -8,9 +8,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde_json::json;
 
 use super::baked::Asset;
-use super::heat;
 use super::request::Request;
 use super::show::Stand;
+use super::{heat, joints};
 use crate::cli::three::Three;
 use crate::preview::heat::Heat;
 use crate::preview::{Camera, Look, Moment, Shading, Stage, View, draw_picture};
@@ -113,6 +113,10 @@ pub(super) fn answer(request: &Request, site: &Site) -> Answer {
             Ok(bytes) => good("application/octet-stream", Body::Own(bytes)),
             Err(content) => content,
         },
+        "/joints" => match angles(request, site) {
+            Ok(text) => good(JSON, Body::Own(text.into_bytes())),
+            Err(content) => content,
+        },
         "/frame" => match frame(request, site) {
             Ok(png) => good("image/png", Body::Own(png)),
             Err(content) => content,
@@ -180,6 +184,20 @@ fn colors(request: &Request, site: &Site) -> Result<Vec<u8>, Content> {
     heat::colors(&asset, &heat).map_err(unmeasured)
 }
 
+/// The moment that a request names; rest where it names no clip.
+fn moment(request: &Request, asset: &Asset) -> Moment {
+    let time = request.number("time").unwrap_or(0.0);
+    let clip = request.number::<usize>("clip").and_then(|clip| asset.clips().nth(clip));
+    Moment { clip: clip.map(|(name, _)| name.to_owned()), time }
+}
+
+/// How far the joints of a file are turned that a request names.
+fn angles(request: &Request, site: &Site) -> Result<String, Content> {
+    let asset = asset(request, site).ok_or_else(nothing)?;
+    let found = joints::angles(&asset, &moment(request, &asset));
+    found.map(|found| found.to_string()).map_err(|message| wrong((500, "Internal Server Error"), message))
+}
+
 /// Pixels that a picture may have across and down.
 const PIXELS: std::ops::RangeInclusive<u32> = 1..=2048;
 
@@ -195,9 +213,7 @@ fn frame(request: &Request, site: &Site) -> Result<Vec<u8>, Content> {
     let (width, height) = size
         .filter(|(width, height)| PIXELS.contains(width) && PIXELS.contains(height))
         .ok_or_else(|| bad("write a width and a height of 1 to 2048 pixels"))?;
-    let time = request.number("time").unwrap_or(0.0);
-    let clip = request.number::<usize>("clip").and_then(|clip| asset.clips().nth(clip));
-    let moment = Moment { clip: clip.map(|(name, _)| name.to_owned()), time };
+    let moment = moment(request, &asset);
     let shading = if request.value("normals").is_some() { Shading::Normals } else { Shading::Standard };
     let look = Look { size: (width, height), shading, ..Look::default() };
     let heat = heat(request)?;

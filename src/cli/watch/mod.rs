@@ -11,6 +11,7 @@ mod answer;
 mod baked;
 mod folders;
 mod heat;
+mod joints;
 mod request;
 mod seen;
 mod server;

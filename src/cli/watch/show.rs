@@ -6,6 +6,7 @@ use std::time::Duration;
 use serde_json::{Value, json};
 
 use super::baked::{Asset, Bake};
+use super::joints;
 
 /// What is shown at a time.
 pub(super) struct Show {
@@ -85,5 +86,6 @@ fn described(asset: &Asset) -> Value {
         "file": asset.compiled.file,
         "line": asset.line(),
         "clips": clips.collect::<Vec<_>>(),
+        "joints": joints::limits(&asset.compiled.joints),
     })
 }

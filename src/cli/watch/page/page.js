@@ -46,6 +46,41 @@ function pose() {
   const time = Number(at('time').value);
   at('seconds').textContent = clip() ? `${time.toFixed(2)} s` : '';
   viewer?.pose(at('clip').selectedIndex - 1, time);
+  tellAngles();
+}
+
+// The question for the angles of joints that is on its way, and whether another waits.
+let asking = null;
+
+// How far joints are turned, beside how far they may: asked one after the other.
+async function tellAngles() {
+  at('limited').hidden = !(shown?.joints.length > 0);
+  const wanted = at('angles').checked && !at('limited').hidden;
+  at('limits').hidden = !wanted;
+  if (!wanted) return;
+  if (asking) {
+    asking.again = true;
+    return;
+  }
+  asking = { again: false };
+  const moment = `clip=${at('clip').selectedIndex - 1}&time=${Number(at('time').value)}`;
+  const answer = await fetch(`/joints?key=${shown.key}&${moment}`).catch(() => null);
+  if (answer?.status === 200) at('limits').replaceChildren(...(await answer.json()).flatMap(rows));
+  const { again } = asking;
+  asking = null;
+  if (again) await tellAngles();
+}
+
+// A joint as rows: its name and axis, its range, and its angle.
+function rows({ name, axes }) {
+  return axes.map(({ axis, least, most, angle, within }) => {
+    const row = document.createElement('tr');
+    row.classList.toggle('beyond', !within);
+    // No angle is minus zero.
+    const degrees = (Math.round(angle * 10) / 10 + 0).toFixed(1);
+    for (const text of [`${name} ${axis}`, `${least}° to ${most}°`, `${degrees}°`]) row.insertCell().textContent = text;
+    return row;
+  });
 }
 
 function stop() {
@@ -155,6 +190,7 @@ at('clip').addEventListener('change', () => { chooseClip(); pose(); });
 at('time').addEventListener('input', () => { stop(); pose(); });
 at('play').addEventListener('click', () => (playing ? stop() : play()));
 at('heat').addEventListener('change', () => wear());
+at('angles').addEventListener('change', () => tellAngles());
 at('fit').addEventListener('click', () => viewer.fit());
 fillClips({ clips: [] });
 fillHeats();

@@ -72,7 +72,8 @@ export class Viewer {
       object.userData.kilnMaterial = object.material;
       object.userData.kilnGeometry = object.geometry;
     });
-    this.scene.add(file.scene, joints);
+    this.model.fans = new Fans(file.scene, asset.joints ?? []);
+    this.scene.add(file.scene, joints, this.model.fans.group);
     this.unpick();
     if (first) this.fit();
     this.clip();
@@ -91,8 +92,9 @@ export class Viewer {
 
   remove() {
     if (!this.model) return;
-    this.scene.remove(this.model.scene, this.model.joints);
+    this.scene.remove(this.model.scene, this.model.joints, this.model.fans.group);
     dispose(this.model.scene);
+    dispose(this.model.fans.group);
     this.model.joints.dispose();
     this.model = null;
   }
@@ -106,6 +108,7 @@ export class Viewer {
   wear() {
     if (!this.model) return;
     this.model.joints.visible = Boolean(this.on.joints);
+    this.model.fans.group.visible = Boolean(this.on.joints);
     this.normals.wireframe = Boolean(this.on.wireframe);
     this.colored.wireframe = Boolean(this.on.wireframe);
     this.model.scene.traverse((object) => {
@@ -216,6 +219,7 @@ export class Viewer {
         this.camera.far = away + 4 * this.reach.radius;
         this.camera.updateProjectionMatrix();
       }
+      if (this.on.joints) this.model?.fans.turn();
       this.renderer.render(this.scene, this.camera);
       if (this.model) performance.mark('kiln-drawn', { detail: this.model.key });
     });
@@ -263,6 +267,85 @@ export class Viewer {
     dispose(this.mark);
     this.mark = null;
   }
+}
+
+// How far joints may turn, drawn at each: a fan for each axis with a range, where the turns before leave it (about x, then z,
+// then y, which is the bone), and a needle at the angle of the moment, red where that is outside.
+class Fans {
+  constructor(scene, joints) {
+    const nodes = new Map();
+    scene.traverse((object) => nodes.set(object.userData.name ?? object.name, object));
+    this.group = new THREE.Group();
+    this.joints = joints.filter(({ name }) => nodes.has(name)).map((joint) => this.joint(nodes.get(joint.name), joint));
+  }
+
+  joint(node, { rest, ranges, length }) {
+    const frame = new THREE.Group();
+    frame.matrixAutoUpdate = false;
+    this.group.add(frame);
+    const fans = ranges.map((range, axis) => (range && range[1] > range[0] ? this.fan(frame, axis, range, 0.4 * length) : null));
+    return { node, frame, ranges, fans, rest: new THREE.Quaternion(...rest) };
+  }
+
+  fan(frame, axis, [least, most], radius) {
+    const end = (degrees) => FROM[axis].clone().multiplyScalar(radius).applyAxisAngle(AXES[axis], THREE.MathUtils.degToRad(degrees));
+    const steps = Math.max(2, Math.ceil((most - least) / 5));
+    const rim = Array.from({ length: steps + 1 }, (_, step) => end(least + ((most - least) * step) / steps));
+    const zero = new THREE.Vector3();
+    const sides = rim.slice(1).flatMap((point, step) => [zero, rim[step], point]);
+    const look = { color: COLORS[axis], side: THREE.DoubleSide, transparent: true, opacity: 0.4, depthTest: false };
+    const blade = new THREE.Mesh(new THREE.BufferGeometry().setFromPoints(sides), new THREE.MeshBasicMaterial(look));
+    const line = new THREE.BufferGeometry().setFromPoints([zero, end(0)]);
+    const needle = new THREE.Line(line, new THREE.LineBasicMaterial({ depthTest: false }));
+    const turned = new THREE.Group();
+    turned.add(blade, needle);
+    frame.add(turned);
+    return { turned, needle };
+  }
+
+  // Puts all of them where the joints are now.
+  turn() {
+    const place = new THREE.Matrix4();
+    for (const { node, frame, ranges, fans, rest } of this.joints) {
+      node.parent.updateWorldMatrix(true, false);
+      place.makeRotationFromQuaternion(rest).setPosition(node.position);
+      frame.matrix.multiplyMatrices(node.parent.matrixWorld, place);
+      frame.matrixWorldNeedsUpdate = true;
+      const angles = nearest(rest.clone().invert().multiply(node.quaternion), ranges);
+      const [x, , z] = [0, 1, 2].map((axis) => new THREE.Quaternion().setFromAxisAngle(AXES[axis], angles[axis] * DEGREE));
+      const before = [new THREE.Quaternion(), x.clone().multiply(z), x];
+      fans.forEach((fan, axis) => {
+        if (!fan) return;
+        fan.turned.quaternion.copy(before[axis]);
+        fan.needle.quaternion.setFromAxisAngle(AXES[axis], angles[axis] * DEGREE);
+        fan.needle.material.color.set(excess(ranges[axis], angles[axis]) > 1e-3 ? 0xd50000 : 0x202428);
+      });
+    }
+  }
+}
+
+const DEGREE = Math.PI / 180;
+const AXES = [new THREE.Vector3(1, 0, 0), new THREE.Vector3(0, 1, 0), new THREE.Vector3(0, 0, 1)];
+// Where fans count from: the bone, and about the bone its z.
+const FROM = [AXES[1], AXES[2], AXES[1]];
+const COLORS = [0xe53935, 0x43a047, 0x1e88e5];
+
+const excess = (range, angle) => (range ? Math.max(range[0] - angle, angle - range[1], 0) : 0);
+
+// The angles of a rotation about x, then z, then y, degrees: of its two triples, whole turns added, that with the least excess.
+function nearest(rotation, ranges) {
+  const m = new THREE.Matrix4().makeRotationFromQuaternion(rotation).elements;
+  const z = Math.atan2(-m[4], Math.hypot(m[0], m[8]));
+  const flat = Math.hypot(m[0], m[8]) > 1e-7;
+  const x = flat ? Math.atan2(m[6], m[5]) : Math.atan2(-m[9], z > 0 ? m[1] : -m[1]);
+  const first = [x / DEGREE, (flat ? Math.atan2(m[8], m[0]) : 0) / DEGREE, z / DEGREE];
+  const turned = ([a, b, c]) => [a, b, c].map((angle, axis) => {
+    const middle = ranges[axis] ? (ranges[axis][0] + ranges[axis][1]) / 2 : 0;
+    return angle - 360 * Math.round((angle - middle) / 360);
+  });
+  const sum = (angles) => angles.reduce((all, angle, axis) => all + excess(ranges[axis], angle), 0);
+  const [one, other] = [turned(first), turned([first[0] + 180, first[1] + 180, 180 - first[2]])];
+  return sum(other) < sum(one) ? other : one;
 }
 
 // The colors of `/heat` by node and primitive, and their scale in words.
