@@ -195,6 +195,11 @@ struct Surfaces {
 }
 
 impl Made<'_> {
+    /// Whether parts of one material stay apart.
+    fn apart(&self) -> bool {
+        !self.spec.output.merge.value
+    }
+
     /// The surfaces for a profile, with what there is to say of them. Where rounding takes a part of the tolerance, they are
     /// kept within the rest of it: an eighth goes to rounding, and more where the grid is coarser.
     fn surfaces(&self, profile: Profile) -> Result<(Surfaces, Vec<Diagnostic>), Vec<Diagnostic>> {
@@ -222,7 +227,8 @@ impl Made<'_> {
     fn surfaces_within(&self, share: f64) -> Result<(Surfaces, Vec<Diagnostic>), Vec<Diagnostic>> {
         let built = self.built;
         let coarser = 1.0 - share;
-        let options = realize::Options { coarser, memo: self.memo, ..realize::Options::default() };
+        let options =
+            realize::Options { coarser, memo: self.memo, apart: self.apart(), ..realize::Options::default() };
         let realized = realize::scene(&built.model, &options);
         let mut realized = realized.map_err(|errors| refusals(built, errors))?;
         for geometry in &mut realized.scene.geometries {

@@ -29,6 +29,7 @@ mod nets;
 mod operations;
 mod optics;
 mod parametric;
+mod parts;
 mod patches;
 mod paths;
 mod perturbed;

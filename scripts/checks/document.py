@@ -265,6 +265,19 @@ def without_lines(path: Path) -> bytes:
     return joined(document, binary)
 
 
+def with_materials(data: bytes) -> bytes:
+    """A .glb with a plain material on primitives that have none, for tools that cannot join such primitives."""
+    document, binary = split(data)
+    bare = [p for mesh in document.get("meshes", []) for p in mesh["primitives"] if "material" not in p]
+    if not bare:
+        return data
+    materials = document.setdefault("materials", [])
+    for primitive in bare:
+        primitive["material"] = len(materials)
+    materials.append({})
+    return joined(document, binary)
+
+
 def points_at_properties(path: Path) -> bool:
     """Whether an animation has channels that name no node (KHR_animation_pointer)."""
     animations = split(path.read_bytes())[0].get("animations", [])

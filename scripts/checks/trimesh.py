@@ -9,7 +9,7 @@ import numpy as np
 import trimesh
 
 from checks import finding
-from checks.document import Document, without_lines
+from checks.document import Document, with_materials, without_lines
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -26,8 +26,14 @@ def measure(path: Path) -> finding.Measured:
     Lines are taken out before: trimesh reads pairs of vertices as one strip. So it is silent on what has lines.
     """
     lines = {mesh.name for mesh in Document(path).meshes if len(mesh.lines.indices)}
-    opened = BytesIO(without_lines(path)) if lines else path
-    scene = trimesh.load_scene(opened, file_type="glb" if lines else None, process=False, merge_primitives=True)
+    several = any(
+        p.material is None for mesh in Document(path).meshes for p in mesh.primitives if len(mesh.primitives) > 1
+    )
+    opened: BytesIO | Path = path
+    if lines or several:
+        opened = BytesIO(with_materials(without_lines(path) if lines else path.read_bytes()))
+    kind = None if opened is path else "glb"
+    scene = trimesh.load_scene(opened, file_type=kind, process=False, merge_primitives=True)
     totals: dict[str, Any] = {"triangles": sum(len(mesh.faces) for mesh in scene.geometry.values())}
     if not lines:
         totals["meshes"] = len(scene.geometry)

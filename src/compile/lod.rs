@@ -17,9 +17,10 @@ use crate::geometry::number::{Bounds, single_rounding};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::spec::{Lod, LodForm};
 use crate::model::ShapeHandle;
+use crate::motion::Path;
 use crate::optimize::decimated;
 use crate::realize::{self, Level};
-use crate::scene::{Geometry, LevelForm, LevelSource, LevelUse, MeshUse, Node, Scene};
+use crate::scene::{Channel, Geometry, LevelForm, LevelSource, LevelUse, MeshUse, Node, Scene};
 
 /// A level has at most this part of the triangles of the one before.
 const FEWER: f64 = 0.9;
@@ -66,7 +67,7 @@ pub(super) fn add(made: &Made<'_>, surfaces: &mut Surfaces) -> Result<Vec<Diagno
     let mut chains: Vec<Vec<Kept>> = realized.shapes.iter().map(|_| Vec::new()).collect();
     let mut asked = vec![0; chains.len()];
     for level in &levels {
-        let options = realize::Options { coarser: kept, level: *level, memo: made.memo };
+        let options = realize::Options { coarser: kept, level: *level, memo: made.memo, apart: made.apart() };
         let made = realize::level(&built.model, &options, realized);
         for (index, coarse) in made.into_iter().enumerate() {
             let finest = &realized.scene.geometries[index];
@@ -75,8 +76,10 @@ pub(super) fn add(made: &Made<'_>, surfaces: &mut Surfaces) -> Result<Vec<Diagno
             // What is as coarse by itself has no such level.
             asked[index] += usize::from(finest.tolerance.is_none_or(|own| allowed > own));
             let coarse = coarse.map(|coarse| {
-                let tolerance = coarse.tolerance.map(|tolerance| tolerance / kept);
-                Geometry { tolerance, ..coarse }
+                let whole = |tolerance: Option<f64>| tolerance.map(|tolerance| tolerance / kept);
+                let mut coarse = Geometry { tolerance: whole(coarse.tolerance), ..coarse };
+                coarse.targets.iter_mut().for_each(|state| state.tolerance = whole(state.tolerance));
+                coarse
             });
             if let Some(next) = next(finest, before, coarse, (allowed, kept)) {
                 chains[index].push(next);
@@ -119,9 +122,13 @@ fn next(
     (allowed, kept): (f64, f64),
 ) -> Option<Kept> {
     let counts = |level: &Geometry| {
-        let tolerance = level.tolerance.map_or(f64::INFINITY, |tolerance| tolerance * kept * (1.0 + 1e-9));
+        let rounding = single_rounding(level.bounds().reach());
+        let within = |(bound, tolerance): (f64, Option<f64>)| {
+            tolerance.is_none_or(|tolerance| bound + rounding <= tolerance * kept * (1.0 + 1e-9))
+        };
+        let states = level.targets.iter().map(|state| (state.deviation.bound, state.tolerance));
         size(level) <= FEWER * size(before)
-            && level.deviation.bound + single_rounding(bounds(level).reach()) <= tolerance
+            && std::iter::once((level.deviation.bound, level.tolerance)).chain(states).all(within)
             && is_alike(finest, level)
     };
     if let Some(geometry) = coarse.filter(counts) {
@@ -207,7 +214,7 @@ fn fewer(
     let why = if finest.targets.is_empty() {
         "coarser ones would have hardly fewer triangles, or come apart"
     } else {
-        "all states of its morph targets share its triangles"
+        "coarser ones would have hardly fewer triangles, come apart, or be too far from one of its states"
     };
     let message =
         format!("shape `{}` has {} of {} levels of detail: {why}", finest.name, found + 1, asked + 1);
@@ -275,7 +282,7 @@ fn keep<T>(all: &mut Vec<T>, places: &[Option<usize>]) {
 
 /// The part of a picture that a geometry covers, taken as the disk around its box, where the error of a level is a pixel.
 fn coverage(finest: &Geometry, level: &Geometry) -> f64 {
-    let error = level.deviation.bound + single_rounding(bounds(level).reach());
+    let error = level.deviation_of_all() + single_rounding(level.bounds().reach());
     let height = bounds(finest).diagonal() / (error * LINES);
     if height.is_finite() { (PI / 4.0 * height * height / ASPECT).min(1.0) } else { 1.0 }
 }
@@ -316,7 +323,23 @@ fn name_levels(scene: &mut Scene) {
         if !skinned {
             scene.nodes[index].mesh = None;
         }
+        let first = scene.nodes.len();
         scene.nodes.extend(own);
+        weigh_levels(scene, index, first);
+    }
+}
+
+/// What changes the weights of a node changes those of its levels, the nodes from `first` on.
+fn weigh_levels(scene: &mut Scene, node: usize, first: usize) {
+    let levels = first..scene.nodes.len();
+    for animation in &mut scene.animations {
+        let own = |channel: &Channel| channel.node == node && channel.path == Path::Weight;
+        let Some(place) = animation.channels.iter().position(own) else { continue };
+        let whole = animation.channels[place].clone();
+        if scene.nodes[node].mesh.is_none() {
+            animation.channels.remove(place);
+        }
+        animation.channels.extend(levels.clone().map(|node| Channel { node, ..whole.clone() }));
     }
 }
 

@@ -59,13 +59,14 @@ fn levels(scene: &Scene, mesh: usize) -> &[LevelUse] {
     if levels.len() > 1 { levels } else { &[] }
 }
 
-/// Nodes that show a mesh, each with the node below it that bears the mesh, or its finest level.
+/// Nodes that show a mesh, each with the nodes that bear the mesh or a level of it in its stead; itself where joints carry it.
 pub(super) fn bearers(scene: &Scene, carriers: &[Carrier]) -> Carriers {
-    let bears = |(_, carrier): &(usize, &Carrier)| {
-        carrier.hangs == Hangs::Below && scene.nodes[carrier.shown].mesh == Some(carrier.mesh)
-    };
-    let all = carriers.iter().enumerate().filter(bears);
-    all.map(|(place, carrier)| (carrier.shown, at(scene.nodes.len() + place))).collect()
+    let itself = |shown: usize| (!is_relieved(carriers, shown)).then(|| (shown, at(shown)));
+    let mut own: Vec<usize> = carriers.iter().map(|carrier| carrier.shown).collect();
+    own.dedup();
+    let others = carriers.iter().enumerate();
+    let others = others.map(|(place, carrier)| (carrier.shown, at(scene.nodes.len() + place)));
+    own.into_iter().filter_map(itself).chain(others).collect()
 }
 
 /// Carriers below a node, as indices of nodes.

@@ -10,7 +10,7 @@ use gltf::json::{Accessor, Index, Root};
 
 use super::buffer::{Binary, Content, Elements};
 use super::read::{ReadError, elements, kind};
-use super::write::put;
+use super::vector::put;
 use crate::geometry::mesh::Color;
 use crate::packing::share_byte;
 

@@ -24,6 +24,7 @@ mod read;
 mod read_morph;
 mod read_motion;
 mod read_second;
+mod vector;
 mod view;
 mod write;
 

@@ -13,7 +13,7 @@ use gltf::json::{Accessor, Index, Root, Value};
 use serde_json::json;
 
 use super::buffer::{Binary, Content, Elements, accessor, index_width};
-use super::write::put;
+use super::vector::put;
 use crate::geometry::number::single;
 use crate::packing::{Filter, octahedral, signed_byte};
 use crate::scene::{Geometry, Grid, MorphTarget};

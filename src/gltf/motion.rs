@@ -5,12 +5,13 @@
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::animation::{Channel, Interpolation, Property, Sampler, Target};
 use gltf::json::validation::Checked as Valid;
-use gltf::json::{Accessor, Animation, Index, Root, Skin, Value};
+use gltf::json::{Accessor, Animation, Index, Node, Root, Skin, Value};
 use serde_json::json;
 
 use super::buffer::{Binary, Content, Elements, accessor};
 use super::pointer::{self, Pointer};
-use super::write::{Carriers, put};
+use super::vector::put;
+use super::write::Carriers;
 use crate::geometry::mesh;
 use crate::geometry::number::single;
 use crate::motion::Path;
@@ -96,7 +97,8 @@ pub(super) fn animations(
             };
             let output = values(root, binary, &channel.values, form);
             samplers.push(self::sampler(input, channel.stepped, output));
-            channels.push(target(channel, sampler, carriers));
+            channels
+                .extend(targets(channel, carriers).into_iter().map(|node| target(channel, sampler, node)));
         }
         for channel in animation.properties.iter().filter(|_| has_properties) {
             let input = times(root, binary, &channel.times, &mut inputs);
@@ -129,16 +131,20 @@ fn sampler(input: Index<Accessor>, stepped: bool, output: Index<Accessor>) -> Sa
     Sampler { extensions: None, extras: None, input, interpolation, output }
 }
 
-fn target(channel: &scene::Channel, sampler: Index<Sampler>, carriers: &Carriers) -> Channel {
-    // Weights move the mesh, which may hang on a node of its own.
-    let carrier = carriers.iter().find(|(shown, _)| channel.path == Path::Weight && *shown == channel.node);
-    let own = Index::new(mesh::index(channel.node));
+/// The nodes that a channel moves: weights move the mesh, which may hang on a node of its own, and all its levels.
+fn targets(channel: &scene::Channel, carriers: &Carriers) -> Vec<Index<Node>> {
+    let bears = |(shown, _): &&(usize, Index<Node>)| channel.path == Path::Weight && *shown == channel.node;
+    let borne: Vec<Index<Node>> = carriers.iter().filter(bears).map(|(_, bearer)| *bearer).collect();
+    if borne.is_empty() { vec![Index::new(mesh::index(channel.node))] } else { borne }
+}
+
+fn target(channel: &scene::Channel, sampler: Index<Sampler>, node: Index<Node>) -> Channel {
     Channel {
         sampler,
         target: Target {
             extensions: None,
             extras: None,
-            node: carrier.map_or(own, |(_, carrier)| *carrier),
+            node,
             path: Valid::Valid(match channel.path {
                 Path::Translation => Property::Translation,
                 Path::Rotation => Property::Rotation,

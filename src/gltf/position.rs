@@ -11,7 +11,7 @@ use gltf::json::{Accessor, Index, Root, Value};
 use serde_json::json;
 
 use super::buffer::{Binary, Content, Elements, accessor};
-use super::write::put;
+use super::vector::put;
 use crate::scene::Grid;
 
 /// Writes positions.

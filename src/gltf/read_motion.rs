@@ -186,7 +186,12 @@ impl Read<'_> {
                 values,
             })
         };
-        let channels: Result<Vec<_>, _> = animation.channels.iter().map(channel).collect();
+        // Levels that stand aside move as the finest does, and are no nodes of the scene.
+        let stands = |channel: &&gltf::json::animation::Channel| {
+            let node = channel.target.node.value();
+            node < self.root.nodes.len() || self.carriers.iter().any(|(carrier, _)| *carrier == node)
+        };
+        let channels: Result<Vec<_>, _> = animation.channels.iter().filter(stands).map(channel).collect();
         Ok(ReadAnimation { channels: channels?, properties })
     }
 

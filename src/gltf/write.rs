@@ -2,26 +2,26 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec2, DVec4};
-use gltf::json::accessor::{ComponentType, Type};
+use glam::DVec2;
+use gltf::json::accessor::Type;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::scene::UnitQuaternion;
 use gltf::json::validation::Checked as Valid;
 use gltf::json::{Accessor, Asset, Index, Mesh, Node, Root, Scene};
 use thiserror::Error;
 
-use super::buffer::{Binary, Content, Elements, at, index_accessors, index_width};
+use super::buffer::{Binary, at, index_accessors, index_width};
 use super::color::colors;
 use super::position::positions;
 use super::profile::Profile;
+use super::vector::{Directions, uvs};
 use super::{
     attribute, carrier, collider, duplicate, lines, manifold, material, morph, motion, pointer, view,
 };
 use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
-use crate::geometry::number::{floor_count, size};
+use crate::geometry::number::size;
 use crate::geometry::tessellate::Deviation;
-use crate::packing::{exponential, octahedral, signed_byte};
 use crate::scene::{Checked, Collider, Geometry, Grid, LevelUse, PropertyChannel};
 
 /// The bytes of a file and what only its writer knows of them.
@@ -265,7 +265,7 @@ fn binary_size(checked: Checked<'_>) -> usize {
         + bind
 }
 
-/// Nodes that show a mesh, each with the node below it that holds the mesh.
+/// Nodes that show a mesh, each with those that hold the mesh or a level of it.
 pub(super) type Carriers = Vec<(usize, Index<Node>)>;
 
 /// Accessors that all meshes of a geometry share.
@@ -282,6 +282,9 @@ struct Shared {
     /// For each run its indices.
     indices: Vec<Index<Accessor>>,
 }
+
+/// What a primitive wears, and the part that it is where parts stay apart.
+type Worn<'a> = (Option<usize>, Option<(u32, &'a str)>);
 
 struct Writer {
     root: Root,
@@ -344,7 +347,7 @@ impl Writer {
             };
             (!shared.targets.is_empty()).then(|| shared.targets.iter().map(one).collect())
         };
-        let primitive = |shared: &Shared, material: Option<usize>, indices: Index<Accessor>| {
+        let primitive = |shared: &Shared, (material, part): Worn<'_>, indices: Index<Accessor>| {
             let worn = material.map(|index| &scene.materials[index]);
             let bumps = worn.is_some_and(crate::scene::Material::needs_tangents);
             let mut attributes = BTreeMap::new();
@@ -370,14 +373,20 @@ impl Writer {
             Primitive {
                 attributes,
                 extensions: None,
-                extras: None,
+                extras: part.and_then(|(_, name)| {
+                    serde_json::value::to_raw_value(&serde_json::json!({ "part": name })).ok()
+                }),
                 indices: Some(indices),
                 material: material.map(|index| Index::new(mesh::index(index))),
                 mode: Valid::Valid(Mode::Triangles),
                 targets: targets(shared, bumps),
             }
         };
-        let worn: Vec<Option<usize>> = runs.iter().map(|run| mesh.materials[run.origin as usize]).collect();
+        let wears = |run: &mesh::Run| {
+            let origin = run.origin as usize;
+            (mesh.materials[origin], geometry.parts.get(origin).map(|name| (run.origin, name.as_str())))
+        };
+        let worn: Vec<Worn<'_>> = runs.iter().map(wears).collect();
         let accessors = &mut self.root.accessors;
         let mut triangles = Vec::new();
         for (shared, range) in shared
@@ -507,86 +516,4 @@ fn extras(
         own.and_then(|own| serde_json::from_str(own.get()).ok()).unwrap_or_default();
     all.insert("colliders".to_owned(), colliders);
     serde_json::value::to_raw_value(&all).ok()
-}
-
-pub(super) fn put<const N: usize>(bytes: &mut Vec<u8>, numbers: [f32; N]) {
-    // Zero has one form, so that equal positions are equal bytes.
-    let words = numbers.map(|number| (number + 0.0).to_le_bytes());
-    bytes.extend_from_slice(words.as_flattened());
-}
-
-/// Unit vectors: floats, or bytes.
-#[derive(Clone, Copy)]
-struct Directions {
-    small: bool,
-    count: usize,
-}
-
-impl Directions {
-    fn write(
-        self,
-        root: &mut Root,
-        binary: &mut Binary,
-        shape: Type,
-        all: impl Iterator<Item = DVec4>,
-    ) -> Index<Accessor> {
-        let count = self.count;
-        if !self.small {
-            let floats = Elements { component: ComponentType::F32, shape, count };
-            let wide = shape == Type::Vec4;
-            let content = Content::Attributes { stride: if wide { 16 } else { 12 } };
-            return binary.attribute(root, floats, content, |bytes| {
-                for vector in all {
-                    let vector = vector.as_vec4();
-                    if wide {
-                        put(bytes, vector.to_array());
-                    } else {
-                        put(bytes, vector.truncate().to_array());
-                    }
-                }
-            });
-        }
-        let elements = Elements { component: ComponentType::I8, shape, count };
-        let folded = binary.is_compressed();
-        let content = if folded { Content::Directions } else { Content::Attributes { stride: 4 } };
-        let made = binary.attribute(root, elements, content, |bytes| {
-            for vector in all {
-                let [x, y, z, w] = vector.to_array();
-                let vector = if folded { octahedral([x, y, z], w) } else { [x, y, z, w].map(signed_byte) };
-                bytes.extend(vector.map(i8::cast_unsigned));
-            }
-        });
-        root.accessors[made.value()].normalized = true;
-        made
-    }
-}
-
-/// Texture coordinates: floats, or 16 bits where all lie in the unit square. Floats that are compressed have 16 bits of the
-/// power of two above the greatest.
-fn uvs(root: &mut Root, binary: &mut Binary, all: &[DVec2], small: bool) -> Index<Accessor> {
-    let count = all.len();
-    let inside = |uv: &DVec2| uv.min_element() >= 0.0 && uv.max_element() <= 1.0;
-    if !(small && all.iter().all(inside)) {
-        let floats = Elements { component: ComponentType::F32, shape: Type::Vec2, count };
-        if binary.is_compressed() {
-            let all: Vec<f64> = all.iter().flat_map(DVec2::to_array).collect();
-            return binary.attribute(root, floats, Content::Exponential { stride: 8 }, |bytes| {
-                exponential(&all).iter().for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
-            });
-        }
-        return binary.attribute(root, floats, Content::Attributes { stride: 8 }, |bytes| {
-            for uv in all {
-                put(bytes, uv.as_vec2().to_array());
-            }
-        });
-    }
-    let elements = Elements { component: ComponentType::U16, shape: Type::Vec2, count };
-    let made = binary.attribute(root, elements, Content::Attributes { stride: 4 }, |bytes| {
-        for uv in all {
-            let share = |part: f64| u16::try_from(floor_count((part * 65535.0).round())).unwrap_or(u16::MAX);
-            bytes.extend_from_slice(uv.to_array().map(|part| share(part).to_le_bytes()).as_flattened());
-        }
-    });
-    root.accessors[made.value()].normalized = true;
-    made
 }

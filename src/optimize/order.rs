@@ -357,6 +357,7 @@ mod tests {
             uv: true,
             colored: false,
             tangents: Some(tangents),
+            parts: Vec::new(),
             lightmap: None,
             attributes: Vec::new(),
             influences: None,

@@ -1,17 +1,18 @@
 //! Levels of detail: the same surfaces, coarser.
 //!
 //! Promise: a level has the origins, texture coordinates and kinds of seams of the finest one, and its points are carried by the
-//! joints that carry the nearest points of that. Not promised: that it has fewer triangles, or that parts stay apart.
+//! joints that carry the nearest points of that. The states of a shape that morphs are cut again together with it. Not promised:
+//! that it has fewer triangles, or that parts stay apart.
 
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 use super::limit::Cost;
-use super::material::group_by_material;
+use super::material::grouped;
 use super::shape::{self, Made, Maker};
-use super::{Options, RealizeError, Realized};
+use super::{Options, RealizeError, Realized, morph};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::mesh::nearest::Nearest;
-use crate::model::{MaterialHandle, Model};
+use crate::model::{MaterialHandle, Model, ShapeHandle};
 use crate::motion::{Influences, weights_of};
 use crate::scene::Geometry;
 
@@ -21,13 +22,15 @@ pub fn level(model: &Model, options: &Options<'_>, finest: &Realized) -> Vec<Opt
     let maker = Maker::new(model, options);
     let make = |index: usize| {
         let geometry = &finest.scene.geometries[index];
-        // States of a shape share its triangles, and a level has others.
-        if !geometry.targets.is_empty() {
-            return None;
-        }
-        let mut made = maker.make(finest.shapes[index], geometry.uv).ok()?;
-        shape::to_metres(&mut made, &model.frame);
-        let made = with_origins(group_by_material(made), &finest.materials[index])?;
+        let finished = |maker: &Maker<'_>, handle: ShapeHandle| {
+            let mut made = maker.make(handle, geometry.uv)?;
+            shape::to_metres(&mut made, &model.frame);
+            Ok(grouped(made, options.apart))
+        };
+        let shape = finest.shapes[index];
+        let made = finished(&maker, shape).ok()?;
+        let (made, targets) = morph::morphed((model, shape), options, made, &finished).ok()?;
+        let made = with_origins(made, &finest.materials[index], options.apart)?;
         let influences = geometry.influences.as_ref();
         let influences = influences.map(|finest| carried(&made.mesh, &geometry.mesh, finest));
         Some(Geometry {
@@ -36,13 +39,14 @@ pub fn level(model: &Model, options: &Options<'_>, finest: &Realized) -> Vec<Opt
             colored: geometry.colored,
             tolerance: made.tolerance,
             deviation: made.deviation,
+            parts: geometry.parts.clone(),
             mesh: made.mesh,
             wire: made.wire,
             tangents: None,
             lightmap: None,
             attributes: Vec::new(),
             influences,
-            targets: Vec::new(),
+            targets,
         })
     };
     let all = 0..finest.shapes.len();
@@ -57,12 +61,19 @@ pub fn within_limits<'a>(
     model: &Model,
     geometries: impl IntoIterator<Item = &'a Geometry>,
 ) -> Result<(), RealizeError> {
-    let cost = |geometry: &Geometry| Cost::of(&geometry.mesh).plus(Cost::of_wire(&geometry.wire));
+    let cost = |geometry: &Geometry| {
+        let own = Cost::of(&geometry.mesh).plus(Cost::of_wire(&geometry.wire));
+        own.with_states(&geometry.mesh, geometry.targets.len() as u64)
+    };
     geometries.into_iter().map(cost).fold(Cost::default(), Cost::plus).check(&model.limits)
 }
 
-/// A shape whose origins count as those of the finest level; `None` where it shows a material that this does not.
-fn with_origins(mut made: Made, materials: &[Option<MaterialHandle>]) -> Option<Made> {
+/// A shape whose origins count as those of the finest level; `None` where it shows a material that this does not, or has other
+/// parts where these stay apart.
+fn with_origins(mut made: Made, materials: &[Option<MaterialHandle>], apart: bool) -> Option<Made> {
+    if apart {
+        return (made.materials == materials).then_some(made);
+    }
     let place = |material: &Option<MaterialHandle>| materials.iter().position(|known| known == material);
     let names: Vec<Option<u32>> =
         made.materials.iter().map(|material| place(material).map(crate::geometry::mesh::index)).collect();

@@ -3,9 +3,10 @@
 use glam::DVec3;
 
 use super::shape::Made;
+use super::source::{Source, sources};
 use crate::geometry::mesh;
 use crate::geometry::mesh::{Mesh, Run, Vertex, VertexIndex};
-use crate::model::{MaterialHandle, Recipe};
+use crate::model::{MaterialHandle, Model, Recipe, ShapeHandle};
 
 /// Materials of elements; those that have none of their own get the whole shape's.
 pub(super) fn own_or(
@@ -87,8 +88,50 @@ pub(super) fn show_normals(made: &mut Made, material: MaterialHandle, recipe: &R
     made.materials = vec![Some(material), None];
 }
 
+/// One run and one origin of strands for each material, or for each part.
+pub(super) fn grouped(made: Made, apart: bool) -> Made {
+    if apart { by_part(made) } else { by_material(made) }
+}
+
+/// One run for each origin, in their order.
+fn by_part(made: Made) -> Made {
+    let sorted = made.mesh.runs.windows(2).all(|pair| pair[0].origin < pair[1].origin);
+    if sorted {
+        return made;
+    }
+    let mut parts: Vec<(u32, std::ops::Range<usize>)> = Vec::with_capacity(made.mesh.runs.len());
+    let mut start = 0;
+    for run in &made.mesh.runs {
+        parts.push((run.origin, start..run.end as usize));
+        start = run.end as usize;
+    }
+    parts.sort_by_key(|(origin, _)| *origin);
+    let mut triangles = Vec::with_capacity(made.mesh.triangles.len());
+    let mut runs: Vec<Run> = Vec::new();
+    for part in parts.chunk_by(|one, other| one.0 == other.0) {
+        part.iter().for_each(|(_, range)| triangles.extend_from_slice(&made.mesh.triangles[range.clone()]));
+        runs.push(Run { origin: part[0].0, end: mesh::index(triangles.len()) });
+    }
+    Made { mesh: Mesh { triangles, runs, ..made.mesh }, ..made }
+}
+
+/// The names of the shapes that the parts of a mesh are, by their origins; of parts that have no triangles none.
+pub(super) fn part_names(model: &Model, shape: ShapeHandle, made: &Made) -> Vec<String> {
+    let sources = sources(model, shape);
+    let mut names = vec![String::new(); made.materials.len()];
+    let mut start = 0;
+    for run in &made.mesh.runs {
+        let first = made.mesh.triangles[start][0];
+        let source = sources.get(made.mesh.vertices[first.subscript()].anchor.source);
+        let part = source.map_or(shape, Source::shape);
+        names[run.origin as usize].clone_from(&model.shape(part).name);
+        start = run.end as usize;
+    }
+    names
+}
+
 /// One run and one origin of strands for each material, in the order of their first use.
-pub(super) fn group_by_material(made: Made) -> Made {
+fn by_material(made: Made) -> Made {
     let origins = made.mesh.runs.iter().map(|run| run.origin);
     let origins = origins.chain(made.wire.strands.iter().map(|strand| strand.origin));
     let mut order: Vec<Option<MaterialHandle>> = Vec::new();

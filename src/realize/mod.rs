@@ -73,6 +73,8 @@ pub struct Options<'a> {
     pub level: Level,
     /// Shapes that were made before; they must be of the model that is realized.
     pub memo: Option<&'a Memo<'a>>,
+    /// Parts that wear one material stay apart.
+    pub apart: bool,
 }
 
 /// A level of detail. What others are made from (cages, sums of weights) is made as for the finest one.

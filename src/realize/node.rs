@@ -3,7 +3,7 @@
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 use super::limit::{Cost, Spent};
-use super::material::group_by_material;
+use super::material::{grouped, part_names};
 use super::shape::{self, Made, Maker};
 use super::textured::wants_uv;
 use super::vertex_color::is_colored;
@@ -36,7 +36,7 @@ pub(super) fn scene(
         }
     }
     let made = make_all(model, options, &shapes, &shown)?;
-    let mut realized = assemble(model, &shapes, &shown, made);
+    let mut realized = assemble((model, options.apart), &shapes, &shown, made);
     if !model.skeletons.is_empty() || !model.clips.is_empty() {
         let used = used_materials(&shown, &shapes, realized.materials.iter().map(Vec::as_slice));
         let baked = motion::add((model, &used), &shapes, &mut realized.scene)?;
@@ -61,7 +61,7 @@ fn make_all(
         let finished = |maker: &Maker<'_>, handle: ShapeHandle| {
             let mut made = maker.make(handle, uv)?;
             shape::to_metres(&mut made, &model.frame);
-            Ok(group_by_material(made))
+            Ok(grouped(made, options.apart))
         };
         let made = finished(&maker, *handle).map_err(|error| (*handle, error))?;
         let states = model.morphs_of(*handle).count() as u64;
@@ -89,7 +89,12 @@ fn make_all(
     if errors.is_empty() { Ok(made) } else { Err(errors) }
 }
 
-fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Morphed>) -> Realized {
+fn assemble(
+    (model, apart): (&Model, bool),
+    shapes: &[ShapeHandle],
+    shown: &[Shown],
+    made: Vec<Morphed>,
+) -> Realized {
     let own = made.iter().map(|(made, _)| made.materials.as_slice());
     let materials = used_materials(shown, shapes, own);
     let position = |handle: MaterialHandle| materials.iter().position(|known| *known == handle);
@@ -120,6 +125,7 @@ fn assemble(model: &Model, shapes: &[ShapeHandle], shown: &[Shown], made: Vec<Mo
             colored: is_colored(&made.mesh, &made.wire),
             tolerance: made.tolerance,
             deviation: made.deviation,
+            parts: if apart { part_names(model, *handle, &made) } else { Vec::new() },
             mesh: made.mesh,
             wire: made.wire,
             tangents: None,

@@ -22,7 +22,7 @@ pub struct LevelFacts {
     /// Segments of its lines.
     #[serde(skip_serializing_if = "super::is_zero")]
     pub segments: u64,
-    /// No point of it is further from the exact shape, metres.
+    /// No point of it is further from the exact shape, metres, in any of its states.
     pub error: f64,
     /// It differs from the exact shape by no more than a pixel of 1920 by 1080 while the disk around its box covers no more
     /// than this part of the picture.
@@ -63,7 +63,7 @@ pub(super) fn levels(
             },
             triangles: read.indices.len() as u64 / 3,
             segments: read.lines.segments.len() as u64,
-            error: shapes.get(&geometry.name).map_or(0.0, |shape| shape.deviation.bound),
+            error: shapes.get(&geometry.name).map_or(0.0, worst),
             coverage: own.coverage,
             bytes: geometry.bytes,
         }
@@ -73,6 +73,12 @@ pub(super) fn levels(
         Some((name(finest.level.mesh), levels.iter().map(facts).collect()))
     };
     written.levels.iter().filter_map(of).collect()
+}
+
+/// The distance from the exact shape that is held at rest and in every state.
+fn worst(shape: &ShapeFacts) -> f64 {
+    let states = shape.morphs.values().map(|state| state.deviation.bound);
+    states.fold(shape.deviation.bound, f64::max)
 }
 
 /// Whether a geometry is a level that lost triangles.

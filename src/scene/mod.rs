@@ -84,6 +84,8 @@ pub struct Geometry {
     /// Points, vertices, triangles; each run is one primitive, its origin an index into the materials of a
     /// [`MeshUse`].
     pub mesh: Mesh,
+    /// Where parts of one material stay apart, for each origin of the runs the name of the part; else empty.
+    pub parts: Vec<String>,
     /// Lines; the origin of each strand is an index into the materials of a [`MeshUse`].
     pub wire: Wire,
     /// Whether texture coordinates are written.

@@ -34,6 +34,12 @@ impl MorphTarget {
 }
 
 impl Geometry {
+    /// The greatest bound of the distances from the exact shape, at rest and in every state, metres.
+    #[must_use]
+    pub fn deviation_of_all(&self) -> f64 {
+        self.targets.iter().map(|target| target.deviation.bound).fold(self.deviation.bound, f64::max)
+    }
+
     /// The box of all points, at rest and in every state.
     #[must_use]
     pub fn bounds(&self) -> Bounds {

@@ -412,6 +412,68 @@ fn levels_are_carried_as_the_finest_is() {
     }
 }
 
+/// A ball that grows: every place of a level, at rest and grown, is within the level's error of a ball, by its radius.
+const GROWING: &str = "tolerance = 0.002\n[lod]\nlevels = 4\n[parameters]\nr = 0.5\n[shape.ball.sphere]\nradius = \"= r\"\n[morph.ball.big]\nwith = { r = 1.25 }\n\
+                       [node.ball]\nshape = \"ball\"\n[clip.c]\nduration = 1\n[[clip.c.track]]\nmorph = \"ball.big\"\nkeys = [{ at = 0, value = 0 }, { at = 1, value = 1 }]";
+
+#[test]
+fn levels_of_what_morphs_hold_in_every_state() {
+    let made = files(GROWING, &[Profile::Core]).remove(0);
+    assert!(made.warnings.is_empty(), "{}", made.warnings);
+    let (glb, report) = (Glb::new(&made.bytes), report(&made));
+    let levels = &report.lods["ball"];
+    assert!(levels.len() == 4 && levels[1..].iter().all(|level| level.source == LevelOrigin::Surface));
+    for (level, tolerance) in levels.iter().zip([0.002, 0.008, 0.032, 0.128]) {
+        let place = glb.list("meshes").iter().position(|mesh| mesh["name"] == level.mesh.as_str());
+        let place = place.expect("the mesh of the level");
+        let (mesh, [big, _]) = (glb.mesh(place), glb.targets(place).remove(0));
+        for (places, radius) in [(&mesh.positions, 0.5), (&big, 1.25)] {
+            let length = |place: [f64; 3]| place.iter().map(|part| part * part).sum::<f64>().sqrt();
+            assert!(places.iter().all(|place| (length(*place) - radius).abs() < 1e-6), "{level:?}");
+            let middle = |corners: &[usize; 3]| {
+                [0, 1, 2].map(|axis| corners.iter().map(|corner| places[*corner][axis]).sum::<f64>() / 3.0)
+            };
+            let off = mesh.triangles.iter().map(|corners| radius - length(middle(corners)));
+            let off = off.fold(0.0, f64::max);
+            assert!(off <= level.error && level.error <= tolerance, "{off} of {level:?}");
+        }
+    }
+    for pair in levels.windows(2) {
+        assert!(pair[1].triangles * 2 < pair[0].triangles, "{levels:?}");
+    }
+}
+
+/// Where weights move, they move every level that can be shown, in every form.
+#[test]
+fn what_moves_weights_moves_those_of_all_levels() {
+    let bones = "[skeleton.s.joint.low]\nhead = [0, -0.5, 0]\ntail = [0, 0, 0]\n[skin.k]\nshape = \"ball\"\nskeleton = \"s\"\nweights = \"rigid\"\n";
+    for (form, carried) in
+        [("msft-lod", ""), ("msft-lod", bones), ("nodes", ""), ("nodes", bones), ("files", "")]
+    {
+        let text = format!(
+            "{}\n{carried}",
+            GROWING.replace("levels = 4", &format!("levels = 4\nform = \"{form}\""))
+        );
+        let profiles: &[Profile] =
+            if carried.is_empty() { &[Profile::Core, Profile::Quantized] } else { &[Profile::Core] };
+        for made in files(&text, profiles) {
+            let glb = Glb::new(&made.bytes);
+            let nodes = glb.list("nodes").iter().enumerate();
+            let shows = nodes.filter(|(_, node)| node.get("mesh").is_some()).map(|(index, _)| index as u64);
+            let shows: Vec<u64> = shows.collect();
+            assert_eq!(shows.len(), if form == "files" { 1 } else { 4 }, "{text}");
+            let channels = glb.list("animations")[0]["channels"].as_array().expect("channels");
+            let mut moved: Vec<u64> = channels
+                .iter()
+                .filter(|channel| channel["target"]["path"] == "weights")
+                .map(|channel| channel["target"]["node"].as_u64().expect("a node"))
+                .collect();
+            moved.sort_unstable();
+            assert_eq!(moved, shows, "{text}");
+        }
+    }
+}
+
 /// Any number of threads makes the same levels.
 #[test]
 fn levels_are_the_same_on_any_number_of_threads() {

@@ -100,3 +100,58 @@ def test_profiles_and_forms_are_verified(kiln: Kiln) -> None:
         for file in files:
             report = kiln.baked(file.stem).report
             assert findings(file, report) == [], file.name
+
+
+BALLOON = """
+tolerance = 0.001
+[parameters]
+high = 1
+[shape.group.group]
+of = ["balloon", "knot"]
+[shape.balloon.revolve]
+profile = { formula = { x = "= 0.2 * cos(t) / sqrt(high)", y = "= 0.2 * high * sin(t)", from = -90, to = 90 } }
+[shape.knot]
+at = [0, "= -0.2 * high - 0.05", 0]
+[shape.knot.sphere]
+radius = 0.03
+[morph.group.drawn-out]
+with = { high = 1.5 }
+[node.balloon]
+shape = "group"
+[clip.bounce]
+duration = 1
+[[clip.bounce.track]]
+morph = "group.drawn-out"
+keys = [{ at = 0, value = 0 }, { at = 0.4, value = 1 }, { at = 1, value = 0.2 }]
+[output]
+merge = false
+[lod]
+levels = 3
+"""
+
+
+def test_levels_of_what_morphs_and_parts_are_verified(kiln: Kiln) -> None:
+    """Blender and three.js play the levels with their weights; sizes and shapes are those of the report."""
+    for form in ("msft-lod", "nodes", "files"):
+        kiln.bake(f'{BALLOON}form = "{form}"\n', "--profile", "core,quantized,web", name=form)
+        for file in sorted((kiln.folder / "out").glob(f"{form}*.glb")):
+            report = kiln.baked(file.stem).report
+            assert len(report["lods"]["group"]) == (1 if form == "files" else 3), file.name
+            assert findings(file, report) == [], file.name
+    # By closed form: the drawn-out state of each level is an ellipsoid with a ball below it.
+    asset = kiln.baked("msft-lod")
+    for level in asset.report["lods"]["group"]:
+        mesh = next(mesh for mesh in asset.document.meshes if mesh.name == level["mesh"])
+        assert [
+            p["extras"]["part"] for p in asset.document.json["meshes"][asset.document.meshes.index(mesh)]["primitives"]
+        ] == [
+            "balloon",
+            "knot",
+        ]
+        places = mesh.positions + mesh.targets[0].attributes["POSITION"]
+        body = np.unique(mesh.primitives[0].indices)
+        x, y, z = places[body].T
+        wide, high = 0.2 / np.sqrt(1.5), 0.3
+        assert np.abs((x / wide) ** 2 + (y / high) ** 2 + (z / wide) ** 2 - 1).max() < 1e-5
+        end = np.unique(mesh.primitives[1].indices)
+        assert np.abs(np.linalg.norm(places[end] - [0, -0.35, 0], axis=1) - 0.03).max() < 1e-6

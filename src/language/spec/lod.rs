@@ -13,7 +13,8 @@ pub(crate) const MOST_LEVELS: usize = 7;
 table! {
     /// Levels of detail: each shape again, more coarsely, for when it is far away. Surfaces are cut anew at a coarser tolerance,
     /// with the same texture coordinates, seams, materials and weights; subdivisions are refined less often, fixed grids have
-    /// half as many steps; meshes without a surface lose triangles. A level stays closed where the shape is, in as many parts
+    /// half as many steps; meshes without a surface lose triangles. A shape that morphs is cut anew together with its states, which
+    /// all are within the level's tolerance, and what moves its weights moves those of its levels. A level stays closed where the shape is, in as many parts
     /// with as many holes; one that would have hardly fewer triangles is left out.
     "lod" pub Lod {
         /// How many levels there are, the finest among them. Each is allowed four times the tolerance of the one before, which

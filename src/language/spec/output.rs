@@ -7,6 +7,7 @@ use glam::DVec3;
 use serde_json::{Map, Value as Json, json};
 
 use crate::language::diagnostic::{Code, Diagnostic};
+use crate::language::source::Span;
 use crate::language::spec::check::Check;
 use crate::language::spec::collider::ColliderForm;
 use crate::language::spec::construct::{choices, table};
@@ -137,6 +138,10 @@ table! {
         /// How much larger the file is than the model in metres, more than 0: 100 for centimetres. Lights reach as much further,
         /// and are the brighter for it. 1 when it is not written. May be one for each profile.
         scale: Option<ByProfile<OutputScale>>;
+        /// Whether what wears one material is one primitive of a mesh. With `false` each part that a shape is put together of is one
+        /// by itself, copies too, and says in `extras` by `part` the name of the shape that it is: for a game that shows, hides or
+        /// paints parts. It then draws as many times as there are parts.
+        merge: Sp<bool> = true;
         /// How small pictures are.
         textures: Option<Sp<Textures>>;
     }
@@ -144,8 +149,15 @@ table! {
 
 impl Output {
     /// What a document without the section says.
-    pub(crate) const NONE: Self =
-        Self { profiles: None, colliders: None, forward: None, pivot: None, scale: None, textures: None };
+    pub(crate) const NONE: Self = Self {
+        profiles: None,
+        colliders: None,
+        forward: None,
+        pivot: None,
+        scale: None,
+        merge: Sp { value: true, span: Span::NONE },
+        textures: None,
+    };
 }
 
 /// Sides of pictures.

@@ -17,7 +17,7 @@ use carry::{Carried, carry, same_polygons};
 
 use super::shape::{Made, Maker};
 use super::source::{Sources, sources};
-use super::{Options, RealizeError};
+use super::{Level, Options, RealizeError};
 use crate::geometry::number::Bounds;
 use crate::geometry::tessellate::{Deviation, Evidence};
 use crate::model::{Model, Morph, ShapeHandle, State};
@@ -92,7 +92,8 @@ fn members<'m>(
     make: &Make<'_>,
 ) -> Result<Vec<Member<'m>>, RealizeError> {
     let coarser = if options.coarser > 0.0 { options.coarser } else { 1.0 };
-    let options = Options { coarser: coarser * finer, ..*options };
+    let level = Level { least: options.level.least * finer, ..options.level };
+    let options = Options { coarser: coarser * finer, level, ..*options };
     // What is made finer than it must be is held to what was asked for.
     let held = |mut made: Made| {
         made.tolerance = made.tolerance.map(|tolerance| tolerance / finer);
