@@ -281,6 +281,9 @@ impl Made<'_> {
         if let Some(placement) = placement {
             scenes.iter_mut().for_each(|scene| placement.place(scene));
         }
+        if profile.draws_instances() {
+            scenes.iter_mut().for_each(optimize::fold_copies);
+        }
         let file =
             |(level, scene)| self.file(scene, &shapes, (profile, level), std::mem::take(&mut warnings));
         scenes.into_iter().enumerate().map(file).collect()

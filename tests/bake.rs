@@ -9,6 +9,7 @@ mod bevels;
 mod colliders;
 mod colors;
 mod coons;
+mod copies;
 mod deformations;
 mod determinism;
 mod document;

@@ -43,6 +43,24 @@ function byName(gltf, document) {
   return objects;
 }
 
+// World matrices of the copies of a mesh that are drawn at once, by the names that they have as nodes. Those of a mesh of whole
+// numbers hold the step and the offset of its grid.
+function copies(gltf, document) {
+  const found = new Map();
+  const { step = 1, offset = [0, 0, 0] } = document.asset.extras?.grid ?? {};
+  const metres = new THREE.Matrix4().makeTranslation(...offset).scale(new THREE.Vector3(step, step, step)).invert();
+  gltf.scene.traverse((object) => {
+    if (!object.isInstancedMesh) return;
+    const index = gltf.parser.associations.get(object)?.nodes ?? gltf.parser.associations.get(object.parent)?.nodes;
+    for (let copy = 0; copy < object.count; copy += 1) {
+      const matrix = new THREE.Matrix4();
+      object.getMatrixAt(copy, matrix);
+      found.set(`${document.nodes[index].name}.${copy}`, matrix.premultiply(object.matrixWorld).multiply(metres));
+    }
+  });
+  return found;
+}
+
 // The first object of each mesh that joints carry or weights move.
 function movedByMesh(gltf, document) {
   const meshes = new Map();
@@ -102,6 +120,8 @@ async function measure(file) {
     gltf.scene.updateMatrixWorld(true);
     measured.totals = { nodes: objects.size };
     for (const [name, object] of objects) measured.nodes[name] = object.matrixWorld.toArray();
+    for (const [name, matrix] of copies(gltf, document)) measured.nodes[name] = matrix.toArray();
+    measured.totals.nodes = Object.keys(measured.nodes).length;
     const report = file.replace(/\.glb$/, '.report.json');
     const clips = fs.existsSync(report) ? (JSON.parse(fs.readFileSync(report, 'utf8')).clips ?? {}) : {};
     measured.clips = play(gltf, clips, objects, movedByMesh(gltf, document));

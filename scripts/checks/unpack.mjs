@@ -1,12 +1,14 @@
 // Files of the profiles `quantized` and `web` as files of floats, for tools that read no others: views decompressed by
 // meshoptimizer's own decoder, whole numbers divided as the specification says, positions taken to metres by the node
-// that carries each mesh, which is then left out.
+// that carries each mesh, which is then left out. Copies that are places of one node become nodes below it, `NODE.0`...
 // node checks/unpack.mjs FOLDER FILE...   writes each file under its own name into FOLDER
 import fs from 'node:fs';
 import path from 'node:path';
 import { MeshoptDecoder } from 'three/examples/jsm/libs/meshopt_decoder.module.js';
 
 const PACKED = 'EXT_meshopt_compression';
+const INSTANCES = 'EXT_mesh_gpu_instancing';
+const TAKEN = [PACKED, INSTANCES, 'KHR_mesh_quantization'];
 const ARRAYS = { 5120: Int8Array, 5121: Uint8Array, 5122: Int16Array, 5123: Uint16Array, 5125: Uint32Array, 5126: Float32Array };
 const WIDTHS = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT4: 16 };
 const MOST = { 5120: 127, 5121: 255, 5122: 32767, 5123: 65535 };
@@ -113,8 +115,9 @@ function unpack(bytes) {
         );
   }
   drop(document, carriers);
-  document.extensionsRequired = document.extensionsRequired?.filter((name) => name !== PACKED && name !== 'KHR_mesh_quantization');
-  document.extensionsUsed = document.extensionsUsed?.filter((name) => name !== PACKED && name !== 'KHR_mesh_quantization');
+  spread(document, plain, quantized ? grid : undefined);
+  document.extensionsRequired = document.extensionsRequired?.filter((name) => !TAKEN.includes(name));
+  document.extensionsUsed = document.extensionsUsed?.filter((name) => !TAKEN.includes(name));
   for (const list of ['extensionsRequired', 'extensionsUsed']) if (!document[list]?.length) delete document[list];
   return joined(document, placed(document, out));
 }
@@ -182,6 +185,50 @@ function drop(document, carriers) {
     if (node.children) node.children = node.children.map(place);
     if (node.extensions?.MSFT_lod) node.extensions.MSFT_lod.ids = node.extensions.MSFT_lod.ids.map(place);
   }
+}
+
+// Copies as nodes, whose places do without the grid that those of the file hold; what held them goes.
+function spread(document, plain, grid) {
+  const held = new Set();
+  const count = document.nodes.length;
+  for (let index = 0; index < count; index += 1) {
+    const node = document.nodes[index];
+    const attributes = node.extensions?.[INSTANCES]?.attributes;
+    if (attributes === undefined) continue;
+    Object.values(attributes).forEach((accessor) => held.add(accessor));
+    const rows = (name, width, rest) => {
+      if (attributes[name] === undefined) return () => rest;
+      const all = numbers(document, plain, document.accessors[attributes[name]]);
+      return (row) => [...all.slice(row * width, (row + 1) * width)];
+    };
+    const copies = document.accessors[Object.values(attributes)[0]].count;
+    const [move, turn, size] = [rows('TRANSLATION', 3, [0, 0, 0]), rows('ROTATION', 4, [0, 0, 0, 1]), rows('SCALE', 3, [1, 1, 1])];
+    for (let row = 0; row < copies; row += 1) {
+      let [translation, scale] = [move(row), size(row)];
+      const rotation = turn(row);
+      if (grid !== undefined) {
+        scale = scale.map((part) => part / grid.step);
+        const offset = turned(rotation, scale.map((part, axis) => part * grid.offset[axis]));
+        translation = translation.map((part, axis) => part - offset[axis]);
+      }
+      (node.children ??= []).push(document.nodes.length);
+      document.nodes.push({ name: `${node.name}.${row}`, mesh: node.mesh, translation, rotation, scale });
+    }
+    delete node.mesh;
+    delete node.extensions[INSTANCES];
+    if (Object.keys(node.extensions).length === 0) delete node.extensions;
+  }
+  if (held.size === 0) return;
+  // They stand last, so that no other accessor changes its number.
+  const first = document.accessors.length - held.size;
+  if (Math.min(...held) !== first) throw new Error('accessors of copies do not stand after all others');
+  document.accessors.length = first;
+}
+
+// A vector turned by a unit quaternion.
+function turned([x, y, z, w], [a, b, c]) {
+  const [d, e, f] = [2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)];
+  return [a + w * d + y * f - z * e, b + w * e + z * d - x * f, c + w * f + x * e - y * d];
 }
 
 await MeshoptDecoder.ready;

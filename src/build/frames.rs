@@ -153,6 +153,7 @@ impl<'a> Builder<'a> {
                     parent: Some(parent),
                     socket: None,
                     is_socket: true,
+                    is_copy: false,
                     camera: None,
                     light: None,
                     translation,

@@ -159,7 +159,10 @@ impl Builder<'_> {
         let shows = |node: &usize| self.model.nodes[*node].shape == Some(handle);
         let nodes: Vec<usize> = (0..self.model.nodes.len())
             .filter(shows)
-            .filter(|node| only.is_none_or(|only| only == *node))
+            .filter(|node| {
+                let own = &self.model.nodes[*node];
+                only.is_none_or(|only| only == *node || (own.is_copy && own.parent == Some(only)))
+            })
             .collect();
         if let (Some(node), true) = (&track.node, nodes.is_empty()) {
             let message = format!("node `{}` does not show the shape `{shape}`", node.value.0);

@@ -43,6 +43,7 @@ impl Builder<'_> {
                 parent: None,
                 socket: None,
                 is_socket: false,
+                is_copy: false,
                 camera: None,
                 light: None,
                 translation: DVec3::ZERO,
@@ -61,17 +62,40 @@ impl Builder<'_> {
             let parent = node.parent.as_ref().and_then(|parent| spec.nodes.get_index_of(&parent.value.0));
             self.model.nodes.push(Node {
                 name: name.clone(),
-                shape,
+                shape: shape.filter(|_| node.copies.is_none()),
                 material,
                 parent,
                 socket: None,
                 is_socket: false,
+                is_copy: false,
                 camera: node.camera.as_ref().map(|camera| self.camera_of(&camera.value)),
                 light: node.light.as_ref().map(|light| self.light_of(&light.value)),
                 translation: node.at.value,
                 rotation: rotation(node.rotate.value),
                 scale: node.scale.value.0,
             });
+        }
+        // After all that are written, so that these have the numbers of the document.
+        for (parent, (name, definition)) in spec.nodes.iter().enumerate() {
+            let node = &definition.value;
+            let shape = node.shape.as_ref().and_then(|shape| self.named_shape(&shape.value.0));
+            let material = self.model.nodes[parent].material;
+            for (index, copy) in node.copies.iter().flat_map(|copies| &copies.value).enumerate() {
+                self.model.nodes.push(Node {
+                    name: format!("{name}.{index}"),
+                    shape,
+                    material,
+                    parent: Some(parent),
+                    socket: None,
+                    is_socket: false,
+                    is_copy: true,
+                    camera: None,
+                    light: None,
+                    translation: copy.value.at.value,
+                    rotation: rotation(copy.value.rotate.value),
+                    scale: copy.value.scale.value.0,
+                });
+            }
         }
     }
 

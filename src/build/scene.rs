@@ -244,6 +244,7 @@ impl Builder<'_> {
             parent,
             socket,
             is_socket,
+            is_copy: false,
             camera,
             light,
             translation,

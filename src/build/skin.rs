@@ -152,7 +152,19 @@ impl Builder<'_> {
                         .help(format!("write `[node.{name}]` with `shape = \"{name}\"`"));
                 reports.push(report);
             }
-            for node in shown.filter(|node| moved(node)) {
+            let copied = shown.clone().find(|node| node.is_copy).and_then(|node| node.parent);
+            if let Some((written, node)) = copied.and_then(|parent| spec.nodes.get_index(parent)) {
+                let place = node.value.copies.as_ref().map_or(node.span, |copies| copies.span);
+                let message = format!("node `{written}` shows copies of the skinned shape `{name}`");
+                let report = Diagnostic::error(Code::SkinPlace, message)
+                    .at(place, "all would stand in one place")
+                    .note(
+                        "a player puts a skinned shape where its joints are, and takes no notice of its node",
+                    )
+                    .help("leave `copies` out, and let the game show the file several times");
+                reports.push(report);
+            }
+            for node in shown.filter(|node| moved(node) && !node.is_copy) {
                 let place = spec.nodes.get(&node.name).map_or(span, |node| node.span);
                 let message = format!(
                     "node `{}` shows the skinned shape `{name}` and has a place of its own",

@@ -38,6 +38,8 @@ pub(super) fn hold(scene: &mut Scene, form: spec::ColliderForm) {
             mesh: None,
             skin: None,
             socket: false,
+            copy: false,
+            instances: Vec::new(),
             camera: None,
             light: None,
             parent: Some(collider.node),

@@ -313,6 +313,8 @@ fn name_levels(scene: &mut Scene) {
             name: level_name(&node.name, level.number),
             mesh: Some(level.mesh),
             socket: false,
+            copy: false,
+            instances: Vec::new(),
             parent: if skinned { node.parent } else { Some(index) },
             translation: DVec3::ZERO,
             rotation: DQuat::IDENTITY,

@@ -105,6 +105,8 @@ impl Placement {
             mesh: None,
             skin: None,
             socket: false,
+            copy: false,
+            instances: Vec::new(),
             camera: None,
             light: None,
             parent: None,

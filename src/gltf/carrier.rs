@@ -44,7 +44,7 @@ pub(super) fn carriers(scene: &Scene) -> Vec<Carrier> {
     for (shown, node) in scene.nodes.iter().enumerate() {
         let Some(mesh) = node.mesh else { continue };
         let levels = if scene.level_form == LevelForm::Extension { levels(scene, mesh) } else { &[] };
-        if node.skin.is_none() && (scene.grid.is_some() || !levels.is_empty()) {
+        if node.skin.is_none() && node.instances.is_empty() && (scene.grid.is_some() || !levels.is_empty()) {
             all.push(Carrier { shown, mesh, hangs: Hangs::Below });
         }
         let coarser = levels.iter().skip(1);

@@ -11,6 +11,7 @@ mod carrier;
 mod collider;
 mod color;
 mod duplicate;
+mod instance;
 mod lines;
 mod manifold;
 mod material;

@@ -106,6 +106,13 @@ impl Profile {
         !matches!(self, Self::Bevy)
     }
 
+    /// Whether many copies of a mesh are drawn at once by `EXT_mesh_gpu_instancing`, which is then required: who does not read
+    /// it would show one of them.
+    #[must_use]
+    pub const fn draws_instances(self) -> bool {
+        matches!(self, Self::Web | Self::Unity | Self::Three | Self::Babylon | Self::Blender)
+    }
+
     /// Whether buffer views are compressed.
     #[must_use]
     pub const fn is_compressed(self) -> bool {

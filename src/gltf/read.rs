@@ -17,6 +17,7 @@ use thiserror::Error;
 use super::attribute::{ReadRange, read_attributes};
 use super::carrier::{ReadLevels, drop_carriers, read_levels};
 use super::color::{ReadColors, read_colors};
+use super::instance;
 use super::read_second::read_second;
 use crate::geometry::mesh;
 use crate::geometry::number::size;
@@ -36,6 +37,8 @@ pub struct Read<'a> {
     pub grid: Option<Grid>,
     /// Nodes that only took a mesh from the grid to metres, and are no nodes here, with those that show it.
     pub(super) carriers: Vec<(usize, usize)>,
+    /// How many nodes are copies that the file holds as places of one node; they stand last.
+    pub copies: usize,
     /// The meshes that have levels of detail.
     pub levels: Vec<ReadLevels>,
     /// Channels of animations that point at properties.
@@ -177,7 +180,9 @@ pub fn read(bytes: &[u8]) -> Result<Read<'_>, ReadError> {
     let geometries = geometries?;
     let levels = read_levels(&root);
     let carriers = drop_carriers(&mut root, grid);
-    Ok(Read { root, geometries, binary, grid, carriers, levels, pointers })
+    let mut read = Read { root, geometries, binary, grid, carriers, copies: 0, levels, pointers };
+    instance::unfold(&mut read);
+    Ok(read)
 }
 
 /// A document and the channels of its animations that point at properties.

@@ -195,7 +195,7 @@ impl Read<'_> {
         Ok(ReadAnimation { channels: channels?, properties })
     }
 
-    fn floats<const N: usize>(
+    pub(super) fn floats<const N: usize>(
         &self,
         index: Index<Accessor>,
         shape: Type,

@@ -16,7 +16,8 @@ use super::position::positions;
 use super::profile::Profile;
 use super::vector::{Directions, uvs};
 use super::{
-    attribute, carrier, collider, duplicate, lines, manifold, material, morph, motion, pointer, view,
+    attribute, carrier, collider, duplicate, instance, lines, manifold, material, morph, motion, pointer,
+    view,
 };
 use crate::geometry::mesh;
 use crate::geometry::mesh::Anchor;
@@ -171,6 +172,7 @@ pub fn write(checked: Checked<'_>, form: &Form) -> Result<Written, WriteError> {
     writer.pointers = motion::animations(both, scene, &written, (&bearers, has_properties));
     writer.nodes(checked, &carriers);
     duplicate::merge_accessors(&mut writer.root);
+    instance::write(&mut writer.root, &mut writer.binary, scene);
     if profile.tells_manifolds() {
         manifold::mark(&mut writer.root, &mut writer.binary, scene);
     }
@@ -263,6 +265,7 @@ fn binary_size(checked: Checked<'_>) -> usize {
         + channels.sum::<usize>()
         + changes.sum::<usize>()
         + bind
+        + scene.nodes.iter().map(|node| node.instances.len() * 40).sum::<usize>()
 }
 
 /// Nodes that show a mesh, each with those that hold the mesh or a level of it.
@@ -410,16 +413,15 @@ impl Writer {
 
     fn nodes(&mut self, checked: Checked<'_>, carriers: &[carrier::Carrier]) {
         let scene = checked.scene();
-        let children = |parent: Option<usize>| -> Vec<Index<Node>> {
-            let of = |(index, node): (usize, &crate::scene::Node)| {
-                (node.parent == parent).then(|| Index::new(mesh::index(index)))
-            };
-            scene.nodes.iter().enumerate().filter_map(of).collect()
-        };
+        let mut children: Vec<Vec<Index<Node>>> = vec![Vec::new(); scene.nodes.len()];
+        let mut top = Vec::new();
+        for (index, node) in scene.nodes.iter().enumerate() {
+            node.parent.map_or(&mut top, |parent| &mut children[parent]).push(at(index));
+        }
         let mut lights = view::lights(&mut self.root, scene);
         let mut bodies = collider::write(&mut self.root, &mut self.binary, scene);
         for (index, node) in scene.nodes.iter().enumerate() {
-            let mut below = children(Some(index));
+            let mut below = std::mem::take(&mut children[index]);
             below.extend(carrier::below(scene, carriers, index));
             let mesh = node.mesh.filter(|_| !carrier::is_relieved(carriers, index));
             let told = mesh.map(|mesh| carrier::told(scene, carriers, (index, mesh)));
@@ -453,9 +455,8 @@ impl Writer {
             });
         }
         carrier::push(&mut self.root, scene, carriers);
-        let nodes = children(None);
-        let scene =
-            self.root.push(Scene { extensions: None, extras: None, name: Some(scene.name.clone()), nodes });
+        let name = Some(scene.name.clone());
+        let scene = self.root.push(Scene { extensions: None, extras: None, name, nodes: top });
         self.root.scene = Some(scene);
     }
 

@@ -93,6 +93,8 @@ pub struct Node {
     pub socket: Option<SocketHandle>,
     /// Whether it is itself a place to attach things to.
     pub is_socket: bool,
+    /// Whether it is one of the places where its parent shows a shape.
+    pub is_copy: bool,
     /// The camera that looks along its -z from there.
     pub camera: Option<Camera>,
     /// The light that shines from there, along its -z if it is a spot or sun.

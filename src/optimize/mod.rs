@@ -4,6 +4,7 @@ mod band;
 mod compact;
 mod decimate;
 mod grid;
+mod instances;
 mod lightmap;
 mod order;
 mod tangent;
@@ -12,6 +13,7 @@ use crate::scene::Scene;
 
 pub use decimate::decimated;
 pub use grid::{GRID_SHARE, MOST_GRID_SHARE, TooCoarse, grid_share};
+pub use instances::fold_copies;
 pub use lightmap::lay_out;
 pub use order::{Order, Place, order_triangles};
 

@@ -137,6 +137,8 @@ fn node(name: String, parent: Option<usize>, place: &Transform) -> Node {
         mesh: None,
         skin: None,
         socket: false,
+        copy: false,
+        instances: Vec::new(),
         camera: None,
         light: None,
         parent,

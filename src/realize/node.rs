@@ -192,6 +192,8 @@ fn nodes(model: &Model, shown: &[Shown]) -> Vec<Node> {
             mesh: place(node),
             skin: None,
             socket: node.is_socket,
+            copy: node.is_copy,
+            instances: Vec::new(),
             camera: node.camera,
             light: node.light,
             parent: node.parent,

@@ -333,10 +333,11 @@ impl<'a> Stage<'a> {
         let scale = root.map_or(1.0, |root| self.rest[root].scale.x);
         let clip = model.clips.iter().find(|known| known.name == clip);
         let facts = |task: &ReachTask| {
-            // Joints and sockets follow the nodes of the document, skeleton by skeleton.
+            // Joints and sockets follow the nodes of the document, skeleton by skeleton; copies that are places of one node
+            // stand after them.
             let before = model.skeletons[..task.skeleton].iter();
             let before: usize = before.map(|one| one.skeleton.joints.len() + one.sockets.len()).sum();
-            let node = model.nodes.len() + before + task.joint;
+            let node = model.nodes.len() - self.file.copies + before + task.joint;
             let frame = |(time, place, left): &(f64, DVec3, f64)| {
                 let found = self.worlds(animation, *time)[node].transform_point3(task.point);
                 let place = outside.transform_point3(*place);

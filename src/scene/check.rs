@@ -1,6 +1,6 @@
 //! The proof that a scene can be written.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use thiserror::Error;
 
 mod morph;
@@ -337,8 +337,13 @@ fn check_node(scene: &Scene, index: usize, node: &Node) -> Result<(), SceneError
         return Err(SceneError::Dangling(format!("node `{}`", node.name)));
     }
     let limit = f64::from(f32::MAX);
-    let finite = node.translation.abs().max_element() <= limit && node.scale.abs().max_element() <= limit;
-    if !finite || (node.rotation.length_squared() - 1.0).abs() > 1e-6 || node.rotation.is_nan() {
+    let sound = |translation: DVec3, rotation: DQuat, scale: DVec3| {
+        translation.abs().max_element() <= limit
+            && scale.abs().max_element() <= limit
+            && (rotation.length_squared() - 1.0).abs() <= 1e-6
+    };
+    let own = sound(node.translation, node.rotation, node.scale);
+    if !own || !node.instances.iter().all(|one| sound(one.translation, one.rotation, one.scale)) {
         return Err(SceneError::Transform(node.name.clone()));
     }
     let mut ancestor = node.parent;

@@ -181,6 +181,17 @@ pub struct MeshUse {
     pub levels: Vec<LevelUse>,
 }
 
+/// A place where a node shows its mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instance {
+    /// Applied last, metres.
+    pub translation: DVec3,
+    /// Applied second.
+    pub rotation: DQuat,
+    /// Applied first.
+    pub scale: DVec3,
+}
+
 /// A place in the tree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
@@ -192,6 +203,10 @@ pub struct Node {
     pub skin: Option<usize>,
     /// Whether it is a place to attach things to.
     pub socket: bool,
+    /// Whether it is one of the places where its parent shows a mesh.
+    pub copy: bool,
+    /// Where it shows its mesh, from itself, in place of once; empty where once.
+    pub instances: Vec<Instance>,
     /// The camera that looks along its -z from there.
     pub camera: Option<Camera>,
     /// The light that shines from there, along its -z if it is a spot or sun.

@@ -181,7 +181,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
     (
         "Nodes",
         "A document without nodes shows each shape that no other definition uses.",
-        &["node", "camera", "light", "scene import"],
+        &["node", "node copy", "camera", "light", "scene import"],
     ),
     (
         "Motion",
