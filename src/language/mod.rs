@@ -10,7 +10,7 @@ pub mod spec;
 mod suggest;
 pub mod value;
 
-pub use diagnostic::explain;
+pub use diagnostic::{errors, explain};
 pub use document::Document;
 pub use format::format;
 pub(crate) use project::{PROJECT_FILE, ProjectFile};

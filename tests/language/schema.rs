@@ -1,6 +1,6 @@
 //! The schema and the reference page say what the reader does.
 
-use kiln::language::{project_schema, reference, schema};
+use kiln::language::{errors, project_schema, reference, schema};
 use serde_json::Value as Json;
 
 /// Every `$ref` of a schema.
@@ -68,15 +68,16 @@ fn the_reference_page_lists_every_table_once() {
     assert!(page.contains("| `smoothstep(from, to, x)` |"));
 }
 
-/// The page and the schema that editors and readers find in `docs` are those of this build; `KILN_BLESS=1`
+/// The pages and the schemas that editors and readers find in `docs` are those of this build; `KILN_BLESS=1`
 /// writes them anew.
 #[test]
-fn docs_hold_the_generated_page_and_schema() {
+fn docs_hold_the_generated_pages_and_schemas() {
     let pretty = |schema| serde_json::to_string_pretty(&schema).expect("plain data") + "\n";
     let docs = [
         ("docs/kiln.schema.json", pretty(schema())),
         ("docs/project.schema.json", pretty(project_schema())),
         ("docs/reference.md", reference()),
+        ("docs/errors.md", errors()),
     ];
     for (path, text) in docs {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(path);

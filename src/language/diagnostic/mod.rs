@@ -2,12 +2,14 @@
 
 mod code;
 mod explain;
+mod index;
 mod json;
 mod list;
 mod render;
 
 pub use code::Code;
 pub use explain::{Example, example, explain};
+pub use index::errors;
 pub use list::Diagnostics;
 
 use serde::{Deserialize, Serialize};
