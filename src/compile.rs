@@ -70,6 +70,9 @@ pub struct Options {
     /// For a picture of the surfaces themselves: what is shown is cut to within so many metres, whatever the document says,
     /// where it is not drawn as a field.
     pub exact: Option<f64>,
+    /// Be quick and coarse: tolerances are [`DRAFT`] times as wide, there are no levels of detail, lightmaps and occlusion, and
+    /// assertions are not checked.
+    pub draft: bool,
     /// Where realized shapes are kept from one bake to the next.
     pub keep: Option<Arc<dyn Keep>>,
     /// Where it is noted what each shape took.
@@ -79,6 +82,9 @@ pub struct Options {
     /// For whom files are; where empty, for whom the document says, and without that, for all.
     pub profiles: Vec<Profile>,
 }
+
+/// How much wider the tolerances of a draft are.
+pub const DRAFT: f64 = 8.0;
 
 /// One asset.
 #[derive(Clone, Debug)]
@@ -204,10 +210,12 @@ impl Made<'_> {
     /// kept within the rest of it: an eighth goes to rounding, and more where the grid is coarser.
     fn surfaces(&self, profile: Profile) -> Result<(Surfaces, Vec<Diagnostic>), Vec<Diagnostic>> {
         let (mut surfaces, mut found) = self.finest(profile)?;
-        if self.options.exact.is_none() {
+        if self.options.exact.is_none() && !self.options.draft {
             found.extend(lod::add(self, &mut surfaces)?);
         }
-        baked::bake(self, &mut surfaces)?;
+        if !self.options.draft {
+            baked::bake(self, &mut surfaces)?;
+        }
         Ok((surfaces, found))
     }
 
@@ -227,9 +235,20 @@ impl Made<'_> {
     fn surfaces_within(&self, share: f64) -> Result<(Surfaces, Vec<Diagnostic>), Vec<Diagnostic>> {
         let built = self.built;
         let coarser = 1.0 - share;
-        let options =
-            realize::Options { coarser, memo: self.memo, apart: self.apart(), ..realize::Options::default() };
-        let realized = realize::scene(&built.model, &options);
+        let made = |coarser: f64| {
+            let options = realize::Options {
+                coarser,
+                memo: self.memo,
+                apart: self.apart(),
+                ..realize::Options::default()
+            };
+            realize::scene(&built.model, &options)
+        };
+        // What cannot be so coarse as a draft may still be as it is written.
+        let realized = match self.options.draft.then(|| made(DRAFT * coarser)) {
+            Some(Ok(realized)) => Ok(realized),
+            _ => made(coarser),
+        };
         let mut realized = realized.map_err(|errors| refusals(built, errors))?;
         for geometry in &mut realized.scene.geometries {
             geometry.tolerance = geometry.tolerance.map(|tolerance| tolerance / coarser);
@@ -327,7 +346,8 @@ impl Made<'_> {
                 measure: options.measure,
             };
             // A document speaks of the finest level.
-            let asserts = if level == 0 { self.spec.asserts.as_slice() } else { &[] };
+            let speaks = level == 0 && !options.draft;
+            let asserts = if speaks { self.spec.asserts.as_slice() } else { &[] };
             let report = measured(&written, &built.model, shapes, &about, asserts)?;
             warnings.extend(beyond_bound(&report, shapes, built));
             Some(report)

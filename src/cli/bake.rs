@@ -190,6 +190,7 @@ impl Worker<'_> {
             no_report: self.bake.no_report,
             beside: true,
             measure: self.bake.measure,
+            draft: self.bake.draft,
             keep: self.cache.clone().map(|cache| cache as Arc<dyn Keep>),
             profiles: self.bake.profile.clone(),
             ..Options::default()
@@ -216,7 +217,7 @@ impl Worker<'_> {
     /// Everything but files that outputs depend on.
     fn key<'a>(&'a self, cache: &Cache, task: &'a Task) -> Key {
         let bake = self.bake;
-        let flags = [bake.no_report, bake.measure].map(|flag| if flag { "yes" } else { "no" });
+        let flags = [bake.no_report, bake.measure, bake.draft].map(|flag| if flag { "yes" } else { "no" });
         let profiles = bake.profile.iter().map(|profile| profile.name());
         let texts = |list: &'a [(String, String)]| {
             list.iter().flat_map(|(name, value)| [name.as_str(), value.as_str()])

@@ -45,13 +45,16 @@ fn picture(render: &Render, printer: &Printer) -> Result<(), Fault> {
     let usage = |message: &str| (Some(message.to_owned()), Outcome::Usage);
     let out = render.out.clone().unwrap_or_else(|| PathBuf::from(named(&render.file)).with_extension("png"));
     let ending = out.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
-    let plays = render.clip.is_some() && render.time.is_none() && ending == "apng";
+    let animated = matches!(ending.as_str(), "apng" | "gif");
+    let plays = render.clip.is_some() && render.time.is_none() && animated;
     let moves = plays || render.turntable.is_some();
     match ending.as_str() {
-        "png" | "apng" | "svg" | "eps" => {}
+        "png" | "apng" | "gif" | "svg" | "eps" => {}
         _ => {
-            let message =
-                format!("write a picture that ends in .png, .apng, .svg or .eps, not {}", out.display());
+            let message = format!(
+                "write a picture that ends in .png, .apng, .gif, .svg or .eps, not {}",
+                out.display()
+            );
             return Err(usage(&message));
         }
     }
@@ -64,11 +67,15 @@ fn picture(render: &Render, printer: &Printer) -> Result<(), Fault> {
             "--camera makes pictures of pixels: write a .png or an .apng, or a drawing with --view",
         ));
     }
-    if ending == "apng" && !moves {
-        return Err(usage("an .apng moves: write --turntable N, or --clip NAME without --time"));
+    if animated && !moves {
+        return Err(usage(&format!(
+            "an .{ending} moves: write --turntable N, or --clip NAME without --time"
+        )));
     }
     if render.heat.is_some() && (drawn || plays) {
-        return Err(usage("--heat makes pictures of one moment: write a .png, or an .apng with --turntable"));
+        return Err(usage(
+            "--heat makes pictures of one moment: write a .png, or an .apng or .gif with --turntable",
+        ));
     }
     if render.exact {
         exact::allowed(render, drawn)?;
@@ -80,7 +87,7 @@ fn picture(render: &Render, printer: &Printer) -> Result<(), Fault> {
         printer.result(&format!("note: {note}"), &json!({ "note": note }));
     }
     let file = if plays {
-        clip(render, printer, &asset)?
+        clip(render, printer, &asset, &ending)?
     } else {
         let mut stage = stage(&asset, render, render.time.unwrap_or(0.0))?;
         if let Some(heat) = &render.heat {
@@ -94,7 +101,7 @@ fn picture(render: &Render, printer: &Printer) -> Result<(), Fault> {
             stage.heat = Some(map);
         }
         match render.turntable {
-            Some(count) => turntable(render, printer, (&asset, &stage), count)?,
+            Some(count) => turntable(render, printer, (&asset, &stage), (count, &ending))?,
             None if drawn => lines(render, &stage, &ending).into_bytes(),
             None => {
                 let picture = still(render, printer, &asset, &stage)?;
@@ -173,6 +180,7 @@ fn document(render: &Render, printer: &Printer) -> Result<(DiskFiles, Document, 
         path: task.path.clone(),
         no_report: true,
         deviations: render.heat == Some(Heat::Deviation),
+        draft: render.draft,
         profiles: vec![Profile::Core],
         ..Options::default()
     };
@@ -276,7 +284,7 @@ fn turntable(
     render: &Render,
     printer: &Printer,
     (asset, stage): (&Asset, &Stage),
-    count: u16,
+    (count, ending): (u16, &str),
 ) -> Result<Vec<u8>, Fault> {
     let look = look(render);
     let start = first_view(render);
@@ -288,11 +296,19 @@ fn turntable(
     let pictures: Vec<Picture> = pictures.map(|picture| legended(render, stage, picture)).collect();
     // Once around takes four seconds, however many pictures there are.
     let milliseconds = (4000 / count).max(10);
-    Picture::animation(&pictures, milliseconds).map_err(unwritten)
+    moving(&pictures, milliseconds, ending)
+}
+
+/// Pictures one after the other, as the ending of the file says: a .png shows them too, where it is read as an .apng.
+fn moving(pictures: &[Picture], milliseconds: u16, ending: &str) -> Result<Vec<u8>, Fault> {
+    if ending == "gif" {
+        return Ok(Picture::gif(pictures, milliseconds));
+    }
+    Picture::animation(pictures, milliseconds).map_err(unwritten)
 }
 
 /// The whole clip; the camera stands where it sees all of it.
-fn clip(render: &Render, printer: &Printer, asset: &Asset) -> Result<Vec<u8>, Fault> {
+fn clip(render: &Render, printer: &Printer, asset: &Asset, ending: &str) -> Result<Vec<u8>, Fault> {
     let look = look(render);
     let name = render.clip.as_deref().unwrap_or_default();
     let found = asset.clips.iter().find(|clip| clip.name == name);
@@ -314,7 +330,7 @@ fn clip(render: &Render, printer: &Printer, asset: &Asset) -> Result<Vec<u8>, Fa
     let shots: Vec<(&Stage, f64, Camera)> =
         cameras.into_iter().map(|(k, camera)| (&stages[k], time(k), camera)).collect();
     let pictures = pictures(render, printer, asset, &shots)?;
-    Picture::animation(&pictures, 42).map_err(unwritten)
+    moving(&pictures, 42, ending)
 }
 
 fn first_view(render: &Render) -> View {

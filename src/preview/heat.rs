@@ -30,6 +30,8 @@ pub enum Heat {
     UvStretch,
     /// How dense the texels of the color texture lie.
     TexelDensity,
+    /// Which level of detail is shown, 0 for the finest.
+    Lod,
     /// How much a joint carries, by its name.
     Weights(String),
 }
@@ -75,13 +77,17 @@ pub enum HeatError {
     /// No joint of the name.
     #[error("no joint `{0}` carries anything{1}")]
     NoJoint(String, String),
+    /// No levels of detail.
+    #[error("there is one level of detail: write `[lod]` in the document for more")]
+    NoLevels,
     /// No triangles.
     #[error("there are no triangles to measure on")]
     NoTriangles,
 }
 
 impl Heat {
-    /// What is shown by the word for it: `deviation`, `curvature`, `uv-stretch`, `texel-density`, or `weights:JOINT`.
+    /// What is shown by the word for it: `deviation`, `curvature`, `uv-stretch`, `texel-density`, `lod`, or
+    /// `weights:JOINT`.
     #[must_use]
     pub fn named(text: &str) -> Option<Self> {
         Some(match text.split_once(':') {
@@ -90,6 +96,7 @@ impl Heat {
             None if text == "curvature" => Self::Curvature,
             None if text == "uv-stretch" => Self::UvStretch,
             None if text == "texel-density" => Self::TexelDensity,
+            None if text == "lod" => Self::Lod,
             _ => return None,
         })
     }
@@ -103,6 +110,7 @@ impl Heat {
             Self::Curvature => "curvature, 1/m".to_owned(),
             Self::UvStretch => "uv stretch".to_owned(),
             Self::TexelDensity => "texels/m".to_owned(),
+            Self::Lod => "level of detail".to_owned(),
             Self::Weights(joint) => format!("weight of {joint}"),
         }
     }
@@ -140,6 +148,8 @@ impl HeatMap {
                     Heat::Curvature => Values::Face(curvature(stage, triangle)),
                     Heat::UvStretch => stretch(part, stage, triangle),
                     Heat::TexelDensity => density((asset, stage), piece.material, triangle),
+                    Heat::Lod if asset.shown.count < 2 => Values::None,
+                    Heat::Lod => Values::Face(single(asset.shown.of(piece.node) as f64)),
                     Heat::Weights(joint) => weights(asset, piece, part, (joint, *corners)),
                 });
             }
@@ -165,6 +175,7 @@ impl HeatMap {
                 Heat::UvStretch => HeatError::NoUv,
                 Heat::TexelDensity => HeatError::NoTexture,
                 Heat::Weights(joint) => HeatError::NoJoint(joint.clone(), joints(asset)),
+                Heat::Lod => HeatError::NoLevels,
                 Heat::Curvature => HeatError::NoTriangles,
             });
         }
@@ -175,6 +186,8 @@ impl HeatMap {
         let whole = matches!(heat, Heat::Weights(_) | Heat::Deviation | Heat::Distance);
         let high = match heat {
             Heat::Weights(_) => 1.0,
+            // The same color for a level whichever is shown.
+            Heat::Lod => (asset.shown.count - 1) as f64,
             _ if !whole && greatest - low > 4.0 * (usual - low) && usual > low => usual,
             _ => greatest,
         };

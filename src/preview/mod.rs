@@ -14,6 +14,7 @@ pub mod asset;
 mod camera;
 mod color;
 pub mod exact;
+mod gif;
 pub mod heat;
 mod legend;
 mod light;

@@ -74,6 +74,12 @@ impl Picture {
         writer.finish()?;
         Ok(bytes)
     }
+
+    /// The same as GIF: of 255 colors, for places that show no better.
+    #[must_use]
+    pub fn gif(pictures: &[Self], milliseconds: u16) -> Vec<u8> {
+        super::gif::gif(pictures, milliseconds)
+    }
 }
 
 fn encoder<'a>(bytes: &'a mut Vec<u8>, picture: &Picture) -> png::Encoder<'static, &'a mut Vec<u8>> {

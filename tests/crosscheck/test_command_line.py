@@ -10,6 +10,7 @@ import re
 import shutil
 import subprocess
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -17,10 +18,9 @@ import pytest
 from inputs.picture import Picture
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from kiln import Kiln
 
+SPECS = Path(__file__).resolve().parents[2] / "specs"
 BOX = "[shape.s.box]\nsize = [1, 1, 1]\n"
 
 
@@ -210,6 +210,51 @@ def test_new_makes_a_spec_that_bakes(kiln: Kiln) -> None:
     (made,) = kiln.folder.rglob("*.toml")
     done = kiln.run("bake", str(made.relative_to(kiln.folder)), "--out", "out")
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_every_starter_is_a_good_document(kiln: Kiln) -> None:
+    listed = [json.loads(line) for line in kiln.run("new", "--list", "--format", "json").stdout.splitlines()]
+    starters = [one["starter"] for one in listed]
+    assert {"vase", "mug", "landscape", "creature", "materials"} <= set(starters)
+    for starter in starters:
+        assert kiln.run("new", f"my-{starter}", "--from", starter).returncode == 0
+        made = f"my-{starter}.toml"
+        assert kiln.run("fmt", "--check", made).returncode == 0
+        if starter == "materials":
+            kiln.write(f'include = ["{made}"]\n[shape.s]\nmaterial = "oak"\n[shape.s.box]\nsize = [1, 1, 1]\n', "with")
+            made = "with.toml"
+        done = kiln.run("bake", made, "--out", "out")
+        assert done.returncode == 0, done.stderr
+        assert done.stderr == "", "a document to start from has no warnings"
+    # The library of the gallery is the one that is written.
+    library = (SPECS / "library" / "materials.toml").read_text(encoding="utf-8")
+    made = (kiln.folder / "my-materials.toml").read_text(encoding="utf-8")
+    assert made.replace("my-materials", "materials") == library
+    unknown = kiln.run("new", "other", "--from", "castle")
+    assert unknown.returncode == 2
+    assert "landscape" in unknown.stderr
+    assert not (kiln.folder / "other.toml").exists()
+
+
+def test_a_draft_is_coarser_and_says_so(kiln: Kiln) -> None:
+    """Eight times the tolerance: of a surface that bends in one direction about the square root of the triangles."""
+    spec = (
+        "tolerance = 1e-3\n[shape.s.sphere]\nradius = 1\n[assert]\ntriangles = { at-least = 2000 }\n[lod]\nlevels = 3\n"
+    )
+    good = kiln.bake(spec, "--cache", "kept")
+    bytes_ = good.path.read_bytes()
+    draft = kiln.bake(spec, "--cache", "kept", "--draft")
+    facts = [one.shape("s") for one in (good, draft)]
+    triangles = [one["triangles"] for one in facts]
+    # A ball has as many triangles as its tolerance is small.
+    assert 5 < triangles[0] / triangles[1] < 12
+    bounds = [one["deviation"]["bound"] for one in facts]
+    assert bounds[0] <= 1e-3 < bounds[1] <= 8e-3
+    assert triangles[1] < 2000, "what is asserted of it does not hold of a draft"
+    assert "lods" in good.report
+    assert not draft.report.get("lods")
+    # The cache does not take one for the other.
+    assert kiln.bake(spec, "--cache", "kept").path.read_bytes() == bytes_
 
 
 def test_explain_knows_every_code_that_check_says(kiln: Kiln) -> None:

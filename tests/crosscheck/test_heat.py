@@ -99,6 +99,22 @@ def test_weights_are_those_of_the_file(kiln: Kiln) -> None:
         assert (found["low"], found["high"]) == (0, 1)
 
 
+def test_levels_of_detail_have_a_color_each(kiln: Kiln) -> None:
+    """A ball of three levels beside a box of one, which shows that whatever is asked for."""
+    text = "tolerance = 0.001\n[lod]\nlevels = 3\n[shape.ball.sphere]\nradius = 1\n"
+    kiln.write(text + "[shape.box]\nat = [3, 0, 0]\n[shape.box.box]\nsize = [1, 1, 1]\n")
+    for level in range(3):
+        found = shown(kiln, "model.toml", "lod", "--lod", str(level), "--view", "front")
+        assert (found["low"], found["high"], found["greatest"]) == (0, 2, level)
+        picture = np.asarray(Image.open(kiln.folder / "heat.png"))[:, :256, :3].astype(int)
+        across = np.flatnonzero((picture != picture[0, 0]).any(axis=2).any(axis=0))
+        middle = [picture[128, int(across[0] + share * (across[-1] - across[0]))] for share in (0.2, 0.9)]
+        # From violet, where there is no green, over blue-green to yellow; the box keeps the first.
+        green = [int(pixel[1]) for pixel in middle]
+        assert green[1] < 40, middle
+        assert [green[0] < 40, 80 < green[0] < 160, green[0] > 160][level], middle
+
+
 def test_the_scale_stands_beside_the_picture(kiln: Kiln) -> None:
     kiln.write(TORUS)
     shown(kiln, "model.toml", "curvature", "--background", "#ffffff")
@@ -117,6 +133,7 @@ def test_what_cannot_be_shown_is_said(kiln: Kiln) -> None:
     for file, heat, code, words in (
         ("out/model.glb", "deviation", 1, "name a document"),
         ("model.toml", "texel-density", 1, "no material has a color texture"),
+        ("model.toml", "lod", 1, "one level of detail"),
         ("model.toml", "uv-stretch", 1, "no mesh has texture coordinates"),
         ("model.toml", "weights:hip", 1, "the file has no skin"),
         ("model.toml", "weights", 2, "weights:JOINT"),

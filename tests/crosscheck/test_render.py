@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageSequence
 
 if TYPE_CHECKING:
     from kiln import Kiln
@@ -73,3 +73,46 @@ def test_pictures_through_a_camera_of_the_document(kiln: Kiln) -> None:
     middle = np.abs(np.arange(300) + 0.5 - 150)
     assert right[middle < height - 1].all()
     assert not right[middle > height + 1].any()
+
+
+@pytest.mark.parametrize("background", ["#e6e8ec", "transparent"])
+def test_a_gif_shows_the_pictures_of_an_apng(kiln: Kiln, background: str) -> None:
+    """The same pictures by another reader: as many, as long, and of colors near to them."""
+    spec = str(ROOT / "specs" / "turned" / "vase.toml")
+    frames = {}
+    for ending in ("gif", "apng"):
+        words = ["--turntable", "5", "--size", "300x200", "--background", background, "--root", str(ROOT)]
+        done = kiln.run("render", spec, "-o", f"turn.{ending}", *words)
+        assert done.returncode == 0, done.stderr
+        with Image.open(kiln.folder / f"turn.{ending}") as image:
+            assert (image.size, image.n_frames) == ((300, 200), 5)
+            assert image.info["duration"] == 800
+            assert image.info["loop"] == 0
+            frames[ending] = [np.asarray(frame.convert("RGBA")).astype(int) for frame in ImageSequence.Iterator(image)]
+    assert len({frame.tobytes() for frame in frames["gif"]}) == 5
+    for few, all_ in zip(frames["gif"], frames["apng"], strict=True):
+        there = all_[:, :, 3] >= 128
+        assert (few[:, :, 3] == np.where(there, 255, 0)).all()
+        apart = np.abs(few - all_)[there][:, :3]
+        # 255 colors for all five: parts of 8 bits are cut to 5, which is 8 steps.
+        assert apart.mean() < 4
+        assert np.quantile(apart, 0.99) <= 16
+    assert kiln.run("render", spec, "-o", "still.gif", "--root", str(ROOT)).returncode == 2
+
+
+def test_a_gif_of_very_many_words_is_read(kiln: Kiln) -> None:
+    """Noise, of which each pixel is a word: the table of words is full many times."""
+    rng = np.random.default_rng(5)
+    Image.fromarray(rng.integers(0, 256, (256, 256, 3), dtype=np.uint8)).save(kiln.folder / "noise.png")
+    material = '[material.m]\ncolor-texture = "noise.png"\nunlit = true\n'
+    kiln.write(f'[shape.s]\nmaterial = "m"\n[shape.s.plane]\nsize = [1, 1]\n{material}')
+    for ending in ("gif", "apng"):
+        done = kiln.run(
+            "render", "model.toml", "-o", f"n.{ending}", "--turntable", "2", "--size", "400", "--view", "top"
+        )
+        assert done.returncode == 0, done.stderr
+    with Image.open(kiln.folder / "n.gif") as few, Image.open(kiln.folder / "n.apng") as all_:
+        pixels = [np.asarray(image.convert("RGB")).astype(int) for image in (few, all_)]
+    assert len(np.unique(pixels[0].reshape(-1, 3), axis=0)) > 200
+    # 255 of all colors: about six in each direction.
+    assert np.abs(pixels[0] - pixels[1]).mean() < 16

@@ -127,6 +127,17 @@ def test_measures_are_shown_as_colors(seen: dict[str, Any]) -> None:
         assert heats["(materials)"]["note"] == ""
 
 
+def test_levels_of_detail_are_shown(seen: dict[str, Any]) -> None:
+    levels = seen["levels"]
+    assert levels["list"] == ["0", "1", "2", "3"]
+    finest, second, coarsest, again = levels["pictures"]
+    assert len({finest, second, coarsest}) == 3
+    assert again == finest
+    assert len({*levels["heats"], *levels["pictures"]}) == 5
+    if seen["viewer"] == "three.js":
+        assert re.match(r"level of detail: violet 0 to yellow 3", levels["note"])
+
+
 def test_switches_change_the_picture(seen: dict[str, Any]) -> None:
     expected = {"wireframe", "normals", "joints"} if seen["viewer"] == "three.js" else {"normals"}
     assert set(seen["switches"]) == expected

@@ -221,6 +221,27 @@ async function motion(browser) {
   await page.close();
 }
 
+// Levels of detail: shown, and as colors.
+async function levels(browser) {
+  fs.copyFileSync(path.join(specs, 'levels/amphora.toml'), path.join(folder, 'amphora.toml'));
+  const page = await open(browser, await watch('amphora.toml'));
+  await settled(page, true);
+  found.levels = { list: await page.locator('#level option').allInnerTexts(), pictures: [] };
+  const chosen = async (select, value, data) => {
+    await page.locator(select).selectOption(value);
+    await page.waitForFunction(
+      ([data, value]) => document.body.dataset[data] === value, [data, value], { timeout: SECONDS * 1000 },
+    );
+    await settled(page, true);
+    return picture(page);
+  };
+  for (const level of ['0', '1', '3', '0']) found.levels.pictures.push(await chosen('#level', level, 'level'));
+  found.levels.heats = [await chosen('#heat', 'lod', 'heat')];
+  found.levels.heats.push(await chosen('#level', '3', 'level'));
+  found.levels.note = await page.locator('#note').innerText();
+  await page.close();
+}
+
 // Milliseconds from a save to its bytes in the page, and to its picture.
 async function latency(browser) {
   const spec = fs.readFileSync(path.join(specs, 'turned/vase.toml'), 'utf8');
@@ -248,6 +269,7 @@ const browser = await launch();
 try {
   await edits(browser);
   await motion(browser);
+  await levels(browser);
   if (three !== '-') await latency(browser);
 } finally {
   await browser.close();

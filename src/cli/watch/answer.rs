@@ -181,7 +181,12 @@ fn colors(request: &Request, site: &Site) -> Result<Vec<u8>, Content> {
     let heat =
         heat(request)?.ok_or_else(|| wrong((400, "Bad Request"), "write what is measured".to_owned()))?;
     let _turn = site.drawing.lock().unwrap_or_else(PoisonError::into_inner);
-    heat::colors(&asset, &heat).map_err(unmeasured)
+    heat::colors(&asset, level(request), &heat).map_err(unmeasured)
+}
+
+/// The level of detail that a request names, the finest where it names none.
+fn level(request: &Request) -> usize {
+    request.number("lod").unwrap_or(0)
 }
 
 /// The moment that a request names; rest where it names no clip.
@@ -219,11 +224,14 @@ fn frame(request: &Request, site: &Site) -> Result<Vec<u8>, Content> {
     let heat = heat(request)?;
     let failed = |message: String| wrong((500, "Internal Server Error"), message);
     let _turn = site.drawing.lock().unwrap_or_else(PoisonError::into_inner);
-    let (drawn, bounds) = asset.drawn().map_err(|message| failed(message.to_owned()))?;
+    let level = level(request);
+    let (drawn, _) = asset.drawn(level).map_err(|message| failed(message.to_owned()))?;
+    // All levels are seen by one camera.
+    let (_, bounds) = asset.drawn(0).map_err(|message| failed(message.to_owned()))?;
     let camera = Camera::turning(bounds, view, look.projection, look.size);
     let picture = match heat {
         Some(heat) => {
-            let stage = heat::heated(&asset, &moment, &heat).map_err(unmeasured)?;
+            let stage = heat::heated(&asset, level, &moment, &heat).map_err(unmeasured)?;
             let picture = draw_picture(drawn, &stage, &camera, &look);
             match &stage.heat {
                 Some(map) => {

@@ -76,6 +76,7 @@ impl<'a> Bake<'a> {
             path: task.path.clone(),
             profiles: watch.profile.clone(),
             origins: true,
+            draft: watch.draft,
             keep: Some(Arc::clone(memory) as Arc<dyn Keep>),
             ..Options::default()
         };
@@ -139,9 +140,12 @@ pub(super) struct Asset {
     pub(super) compiled: Compiled,
     /// What it was made from.
     source: Source,
-    drawn: OnceLock<Result<Drawn, String>>,
+    drawn: [OnceLock<Result<Drawn, String>>; LEVELS],
     deviations: OnceLock<Vec<Option<Measured>>>,
 }
+
+/// Levels of detail that are shown at most: as many as a document may ask for.
+const LEVELS: usize = 8;
 
 /// What makes an asset.
 struct Source {
@@ -156,7 +160,7 @@ pub(super) type Drawn = (preview::asset::Asset, Bounds);
 impl Asset {
     fn new(compiled: Compiled, source: Source) -> Self {
         let key = blake3::hash(&compiled.bytes).to_hex()[..32].to_owned();
-        Self { key, compiled, source, drawn: OnceLock::new(), deviations: OnceLock::new() }
+        Self { key, compiled, source, drawn: Default::default(), deviations: OnceLock::new() }
     }
 
     /// What there is to say of it, in a line.
@@ -170,14 +174,22 @@ impl Asset {
         clips.map(|(name, facts)| (name.as_str(), facts.duration))
     }
 
-    /// For drawing; read when it is first asked for.
-    pub(super) fn drawn(&self) -> Result<&Drawn, &str> {
+    /// For drawing at a level of detail; read when it is first asked for.
+    pub(super) fn drawn(&self, level: usize) -> Result<&Drawn, &str> {
+        let level = level.min(LEVELS - 1);
         let read = || {
-            let asset = preview::asset::read(&self.compiled.bytes).map_err(|error| error.to_string())?;
+            let mut asset = preview::asset::read(&self.compiled.bytes).map_err(|error| error.to_string())?;
+            asset.show_level(level);
             let rest = Stage::new(&asset, &Moment::default()).map_err(|error| error.to_string())?;
             Ok((asset, rest.bounds))
         };
-        self.drawn.get_or_init(read).as_ref().map_err(String::as_str)
+        self.drawn[level].get_or_init(read).as_ref().map_err(String::as_str)
+    }
+
+    /// How many levels of detail its file holds.
+    pub(super) fn levels(&self) -> usize {
+        let lods = self.compiled.report.iter().flat_map(|report| report.lods.values());
+        lods.map(Vec::len).max().unwrap_or(1)
     }
 
     /// For each mesh how far its triangles lie from the true surface; none of any where its files hold something else by

@@ -6,9 +6,9 @@ use super::baked::Asset;
 use crate::preview::heat::{Heat, HeatMap, Measured};
 use crate::preview::{Moment, Stage};
 
-/// What is drawn of an asset at a moment, with what is shown on it.
-pub(super) fn heated(asset: &Asset, moment: &Moment, heat: &Heat) -> Result<Stage, String> {
-    let (drawn, _) = asset.drawn().map_err(str::to_owned)?;
+/// What is drawn of an asset at a level of detail and a moment, with what is shown on it.
+pub(super) fn heated(asset: &Asset, level: usize, moment: &Moment, heat: &Heat) -> Result<Stage, String> {
+    let (drawn, _) = asset.drawn(level).map_err(str::to_owned)?;
     let mut stage = Stage::new(drawn, moment).map_err(|error| error.to_string())?;
     let deviations: &[Option<Measured>] = if *heat == Heat::Deviation { asset.deviations() } else { &[] };
     let map = HeatMap::new(heat, (drawn, &stage), deviations).map_err(|error| error.to_string())?;
@@ -16,14 +16,14 @@ pub(super) fn heated(asset: &Asset, moment: &Moment, heat: &Heat) -> Result<Stag
     Ok(stage)
 }
 
-/// The colors of an asset at rest: a line of JSON, padded to a multiple of four bytes, that names the primitives by their
+/// The colors of a level of an asset at rest: a line of JSON, padded to a multiple of four bytes, that names the primitives by their
 /// node and their number in its mesh, then for each triangle nine numbers (f32, little-endian), the linear colors of
 /// its corners in the order of the file.
-pub(super) fn colors(asset: &Asset, heat: &Heat) -> Result<Vec<u8>, String> {
+pub(super) fn colors(asset: &Asset, level: usize, heat: &Heat) -> Result<Vec<u8>, String> {
     const GRAY: [f32; 3] = [0.35; 3];
     const CORNERS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let stage = heated(asset, &Moment::default(), heat)?;
-    let (drawn, _) = asset.drawn().map_err(str::to_owned)?;
+    let stage = heated(asset, level, &Moment::default(), heat)?;
+    let (drawn, _) = asset.drawn(level).map_err(str::to_owned)?;
     let map = stage.heat.as_ref().ok_or("nothing was measured")?;
     let (mut pieces, mut numbers) = (Vec::new(), Vec::new());
     let (mut start, mut before, mut part) = (0, None, 0);

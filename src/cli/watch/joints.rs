@@ -19,7 +19,7 @@ pub(super) fn limits(joints: &[LimitedJoint]) -> Value {
 
 /// The same joints at a moment: for each axis with a range that range and the angle, degrees, and whether it lies within.
 pub(super) fn angles(asset: &Asset, moment: &Moment) -> Result<Value, String> {
-    let (drawn, _) = asset.drawn().map_err(str::to_owned)?;
+    let (drawn, _) = asset.drawn(0).map_err(str::to_owned)?;
     let turned = turns(drawn, moment).map_err(|error| error.to_string())?;
     let one = |joint: &LimitedJoint| {
         let node = drawn.nodes.iter().position(|node| node.name == joint.name)?;

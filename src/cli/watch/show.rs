@@ -86,6 +86,7 @@ fn described(asset: &Asset) -> Value {
         "file": asset.compiled.file,
         "line": asset.line(),
         "clips": clips.collect::<Vec<_>>(),
+        "levels": asset.levels(),
         "joints": joints::limits(&asset.compiled.joints),
     })
 }

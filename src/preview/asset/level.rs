@@ -4,6 +4,22 @@ use std::collections::BTreeMap;
 
 use super::Asset;
 
+/// Which level of detail each node shows.
+#[derive(Clone, Debug, Default)]
+pub(in crate::preview) struct Shown {
+    /// How many levels there are.
+    pub(in crate::preview) count: usize,
+    /// That of each node.
+    levels: Vec<usize>,
+}
+
+impl Shown {
+    /// That of a node, 0 for the finest.
+    pub(in crate::preview) fn of(&self, node: usize) -> usize {
+        self.levels.get(node).copied().unwrap_or(0)
+    }
+}
+
 impl Asset {
     /// How many levels of detail some node has; 1 where none has more than itself.
     #[must_use]
@@ -14,14 +30,18 @@ impl Asset {
 
     /// Shows one level of detail of everything, and nothing else: the coarsest where there is none so coarse.
     pub fn show_level(&mut self, level: usize) {
+        self.shown = Shown { count: self.levels(), levels: vec![0; self.nodes.len()] };
         for node in 0..self.nodes.len() {
             let levels = &self.nodes[node].levels;
             let Some(last) = levels.len().checked_sub(1).filter(|_| level > 0) else { continue };
-            let coarser = self.nodes[levels[(level - 1).min(last)]].mesh;
+            let shown = level.min(last + 1);
+            let coarser = self.nodes[levels[shown - 1]].mesh;
             self.nodes[node].mesh = coarser;
+            self.shown.levels[node] = shown;
         }
         for levels in self.named().into_values() {
             let shown = level.min(levels.len() - 1);
+            self.shown.levels[levels[shown]] = shown;
             let hidden = levels.iter().enumerate().filter(|(number, _)| *number != shown);
             hidden.for_each(|(_, node)| self.nodes[*node].mesh = None);
         }

@@ -12,6 +12,7 @@ mod texture;
 use glam::{DAffine2, DMat2, DVec2};
 
 pub(super) use change::{changed, see};
+use level::Shown;
 pub use texture::{Texture, Wrap};
 
 use crate::geometry::number::{floor_count, sin_cos, single};
@@ -39,6 +40,8 @@ pub struct Asset {
     pub clips: Vec<Clip>,
     /// What was left out.
     pub notes: Vec<String>,
+    /// Which level of detail each node shows, once one was chosen.
+    pub(super) shown: Shown,
 }
 
 /// How a surface looks. Numbers and pictures are those of glTF.
@@ -119,6 +122,7 @@ pub fn read(bytes: &[u8]) -> Result<Asset, GltfFault> {
         textures: texture::read(&data, &mut notes),
         clips: file.clips()?,
         notes,
+        shown: Shown::default(),
     };
     asset.notes.extend(change::untold(&asset));
     check_levels(&asset)?;

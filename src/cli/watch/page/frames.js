@@ -15,6 +15,7 @@ export class Frames {
     this.view = { azimuth: 35, elevation: 22 };
     this.on = {};
     this.moment = { clip: -1, time: 0 };
+    this.lod = 0;
     this.image = place.appendChild(new Image());
     this.image.alt = 'the model';
     this.image.draggable = false;
@@ -40,6 +41,13 @@ export class Frames {
     this.complaint = '';
     await this.draw();
     return this.complaint;
+  }
+
+  // Shows a level of detail.
+  async level(number) {
+    if (number === this.lod) return;
+    this.lod = number;
+    await this.draw();
   }
 
   pose(clip, time) {
@@ -95,6 +103,7 @@ export class Frames {
       `width=${pixels(this.place.clientWidth)}&height=${pixels(this.place.clientHeight)}`,
     ];
     if (clip >= 0) parts.push(`clip=${clip}&time=${time}`);
+    if (this.lod > 0) parts.push(`lod=${this.lod}`);
     if (this.on.normals) parts.push('normals');
     if (this.measured) parts.push(`heat=${encodeURIComponent(this.measured)}`);
     return `/frame?${parts.join('&')}`;

@@ -126,8 +126,16 @@ function chooseClip() {
 // What is measured on the surface: of skins also the weight of each joint.
 function fillHeats() {
   const joints = viewer.joints?.() ?? [];
-  const measures = ['deviation', 'curvature', 'uv-stretch', 'texel-density', ...joints.map((name) => `weights:${name}`)];
+  const levels = shown?.levels > 1 ? ['lod'] : [];
+  const measures = ['deviation', 'curvature', 'uv-stretch', 'texel-density', ...levels, ...joints.map((name) => `weights:${name}`)];
   fill(at('heat'), ['(materials)', ...measures]);
+}
+
+// The levels of detail that there are; that which was chosen is shown again.
+async function fillLevels(asset) {
+  fill(at('level'), Array.from({ length: asset.levels }, (_, number) => String(number)));
+  at('level').parentElement.hidden = asset.levels < 2;
+  await viewer.level(at('level').selectedIndex);
 }
 
 // Shows what was measured as colors, or the materials.
@@ -144,6 +152,7 @@ async function show() {
     shown = asset;
     fillClips(asset);
     fillHeats();
+    await fillLevels(asset);
     if (at('heat').selectedIndex > 0 || document.body.dataset.heat) await wear();
     pose();
     Object.assign(document.body.dataset, { shown: asset.key, shownFile: asset.file });
@@ -190,6 +199,11 @@ at('clip').addEventListener('change', () => { chooseClip(); pose(); });
 at('time').addEventListener('input', () => { stop(); pose(); });
 at('play').addEventListener('click', () => (playing ? stop() : play()));
 at('heat').addEventListener('change', () => wear());
+at('level').addEventListener('change', async () => {
+  await viewer.level(at('level').selectedIndex);
+  await wear();
+  document.body.dataset.level = at('level').value;
+});
 at('angles').addEventListener('change', () => tellAngles());
 at('fit').addEventListener('click', () => viewer.fit());
 fillClips({ clips: [] });

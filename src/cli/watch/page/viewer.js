@@ -66,11 +66,12 @@ export class Viewer {
     const first = !this.model;
     this.remove();
     const joints = new THREE.SkeletonHelper(file.scene);
-    this.model = { key: asset.key, file, scene: file.scene, joints, mixer: new THREE.AnimationMixer(file.scene) };
+    this.model = { key: asset.key, file, scene: file.scene, joints, mixer: new THREE.AnimationMixer(file.scene), lod: 0 };
     file.scene.traverse((object) => {
       if (!object.material) return;
       object.userData.kilnMaterial = object.material;
       object.userData.kilnGeometry = object.geometry;
+      object.userData.kilnLevels = [object.geometry];
     });
     this.model.fans = new Fans(file.scene, asset.joints ?? []);
     this.scene.add(file.scene, joints, this.model.fans.group);
@@ -122,6 +123,47 @@ export class Viewer {
     this.draw();
   }
 
+  // Shows a level of detail: nodes that stand for others at it (`MSFT_lod`) lend them their triangles, and of nodes that are
+  // levels by their names the others are hidden.
+  async level(number) {
+    const { model } = this;
+    if (!model || number === model.lod) return;
+    const { parser } = model.file;
+    const work = [];
+    model.scene.traverse((object) => {
+      if (!object.isMesh) return;
+      const { nodes, primitives: part = 0 } = { ...parser.associations.get(object.parent), ...parser.associations.get(object) };
+      const ids = parser.json.nodes[nodes]?.extensions?.MSFT_lod?.ids;
+      if (ids) work.push(this.lend(object, part, number === 0 ? null : ids[Math.min(number, ids.length) - 1]));
+    });
+    await Promise.all(work);
+    if (model !== this.model) return;
+    for (const levels of named(model.scene)) {
+      levels.forEach((object, own) => { object.visible = own === Math.min(number, levels.length - 1); });
+    }
+    model.lod = number;
+    this.unpick();
+    this.wear();
+  }
+
+  // Gives a part of a mesh the triangles that it has at another node; what is not there is not drawn.
+  async lend(object, part, node) {
+    const { associations } = this.model.file.parser;
+    let lender = object;
+    if (node !== null) {
+      const other = await this.model.file.parser.getDependency('node', node);
+      lender = null;
+      other.traverse((one) => { if (one.isMesh && (associations.get(one)?.primitives ?? 0) === part) lender = one; });
+    }
+    const [finest, ...others] = object.userData.kilnLevels;
+    const geometry = lender === object ? finest : lender?.geometry ?? new THREE.BufferGeometry();
+    if (geometry !== finest && !others.includes(geometry)) object.userData.kilnLevels.push(geometry);
+    object.userData.kilnHeat?.dispose();
+    delete object.userData.kilnHeat;
+    object.userData.kilnGeometry = geometry;
+    object.userData.kilnMesh = associations.get(lender)?.meshes;
+  }
+
   // The names of joints that carry a skin.
   joints() {
     const names = new Set();
@@ -135,7 +177,7 @@ export class Viewer {
   async heat(what) {
     const { model } = this;
     if (!model) return '';
-    const answer = what ? await fetch(`/heat?key=${model.key}&heat=${encodeURIComponent(what)}`) : null;
+    const answer = what ? await fetch(`/heat?key=${model.key}&lod=${model.lod}&heat=${encodeURIComponent(what)}`) : null;
     const says = answer?.headers.get('content-type')?.startsWith('text/plain');
     const bytes = answer?.status === 200 && !says ? await answer.arrayBuffer() : null;
     const complaint = says ? (await answer.text()).trim() : '';
@@ -257,7 +299,7 @@ export class Viewer {
     const look = new THREE.LineBasicMaterial({ color: 0xff3d00, depthTest: false });
     this.mark = new THREE.LineLoop(lines, look);
     this.scene.add(this.mark);
-    const mesh = this.model.file.parser.associations.get(hit.object)?.meshes;
+    const mesh = hit.object.userData.kilnMesh ?? this.model.file.parser.associations.get(hit.object)?.meshes;
     if (mesh !== undefined) this.picked(this.model.key, mesh, corners);
   }
 
@@ -348,6 +390,20 @@ function nearest(rotation, ranges) {
   return sum(other) < sum(one) ? other : one;
 }
 
+// Objects that are levels of detail by their names, the finest first.
+function named(scene) {
+  const all = new Map();
+  scene.traverse((object) => {
+    const name = object.userData.name ?? object.name;
+    const [, own, number] = /^(.*?)(?:_LOD(\d+))?$/.exec(name);
+    const mesh = object.isMesh || object.children.some((child) => child.isMesh && !child.userData.name);
+    if (own && mesh) all.set(own, [...all.get(own) ?? [], [Number(number ?? 0), object]]);
+  });
+  const levels = [...all.values()].map((list) => list.sort(([a], [b]) => a - b));
+  return levels.filter((list) => list.length > 1 && list.every(([number], place) => number === place))
+    .map((list) => list.map(([, object]) => object));
+}
+
 // The colors of `/heat` by node and primitive, and their scale in words.
 function readColors(bytes) {
   const end = new Uint8Array(bytes).indexOf(10) + 1;
@@ -367,7 +423,7 @@ function readColors(bytes) {
 function dispose(root) {
   root.traverse((object) => {
     object.geometry?.dispose();
-    object.userData.kilnGeometry?.dispose();
+    for (const geometry of object.userData.kilnLevels ?? []) geometry.dispose();
     object.userData.kilnHeat?.dispose();
     object.skeleton?.dispose();
     for (const material of [object.userData.kilnMaterial ?? object.material ?? []].flat()) {
