@@ -691,3 +691,93 @@ fn base64(bytes: &[u8]) -> String {
     }
     text
 }
+
+/// Places of a mesh that a node shows many times, by a reader that knows the extension: each vertex at each copy.
+fn copied(json: &Value, numbers: &dyn Fn(&Value) -> Vec<Vec<f64>>) -> Vec<glam::DVec3> {
+    let node = json["nodes"].as_array().expect("nodes").iter().find(|node| node["name"] == "forest");
+    let node = node.expect("it keeps its name");
+    let own = &node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+    let (moves, turns, sizes) =
+        (numbers(&own["TRANSLATION"]), numbers(&own["ROTATION"]), numbers(&own["SCALE"]));
+    let mesh = &json["meshes"][count(&node["mesh"])]["primitives"][0]["attributes"]["POSITION"];
+    let points = numbers(mesh);
+    let mut all = Vec::new();
+    for ((size, turn), from) in sizes.iter().zip(&turns).zip(&moves) {
+        let turn = glam::DQuat::from_slice(turn).normalize();
+        let map = glam::DAffine3::from_scale_rotation_translation(
+            glam::DVec3::from_slice(size),
+            turn,
+            glam::DVec3::from_slice(from),
+        );
+        all.extend(points.iter().map(|point| map.transform_point3(glam::DVec3::from_slice(point))));
+    }
+    all
+}
+
+/// Copies stand where they stood, one of them many times as large as the rest; their numbers may be whole ones.
+#[test]
+fn what_is_shown_many_times_at_once_stays_where_it_is() {
+    let mut file = File::new();
+    let position = file.floats(&sheet(6, 0.37), 3);
+    let primitives = json!([{ "attributes": { "POSITION": position } }]);
+    let (_, node) = file.shown("forest", primitives);
+    let moves = file.floats(&[1.0, 2.0, 3.0, -40.0, 0.5, 7.0, 0.0, 0.0, 90.0], 3);
+    let turns: Vec<u8> = [[0_i16, 0, 0, 32767], [0, 23170, 0, 23170], [18918, 0, 0, 26754]]
+        .into_iter()
+        .flatten()
+        .flat_map(i16::to_le_bytes)
+        .collect();
+    let turns = file.accessor(&turns, (5122, "VEC4", 3));
+    file.json["accessors"][turns]["normalized"] = json!(true);
+    let sizes = file.floats(&[1.0, 1.0, 1.0, 0.5, 2.0, 0.5, 30.0, 30.0, 30.0], 3);
+    let shade = file.floats(&[0.1, 0.2, 0.3], 1);
+    let own = json!({ "TRANSLATION": moves, "ROTATION": turns, "SCALE": sizes, "_SHADE": shade });
+    file.json["nodes"][node]["extensions"] = json!({ "EXT_mesh_gpu_instancing": { "attributes": own } });
+    file.json["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
+    let numbers = |read: &Read, index: &Value| -> Vec<Vec<f64>> {
+        let kind = read.json["accessors"][count(index)]["componentType"].as_u64();
+        let one = |bytes: &[u8]| match kind {
+            Some(5122) => f64::from(i16::from_le_bytes([bytes[0], bytes[1]])) / 32767.0,
+            Some(5123) => f64::from(u16::from_le_bytes([bytes[0], bytes[1]])),
+            _ => f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])),
+        };
+        let size = if matches!(kind, Some(5122 | 5123)) { 2 } else { 4 };
+        read.elements(index).iter().map(|row| row.chunks(size).map(one).collect()).collect()
+    };
+    let plain = file.made(Profile::Core);
+    let before = copied(&plain.json, &|index| numbers(&plain, index));
+    assert_eq!((before.len(), plain.report.errors.positions), (3 * 7 * 7, 0.0));
+    for profile in [Profile::Quantized, Profile::Web] {
+        let made = file.made(profile);
+        let after = copied(&made.json, &|index| numbers(&made, index));
+        let attributes = &made.json["nodes"][node]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+        let mesh = &made.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"];
+        assert_eq!(made.json["accessors"][count(mesh)]["componentType"], 5123, "the mesh is on a grid");
+        let error = made.report.errors.positions;
+        assert!(error > 0.0 && error < 0.02, "{error}");
+        // The order of vertices may be another one.
+        let near =
+            |from: &glam::DVec3| after.iter().map(|to| from.distance(*to)).fold(f64::INFINITY, f64::min);
+        let off = before.iter().map(near).fold(0.0, f64::max);
+        assert!(off <= error * 1.001 + 1e-5, "{off} and {error}");
+        let shades: Vec<f64> = numbers(&made, &attributes["_SHADE"]).concat();
+        assert!(shades.iter().zip([0.1, 0.2, 0.3]).all(|(found, wanted)| (found - wanted).abs() < 1e-7));
+    }
+}
+
+/// Places that do not belong together are told with where they stand.
+#[test]
+fn places_of_unequal_numbers_are_told() {
+    let mut file = File::new();
+    let position = file.floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0], 3);
+    let (_, node) = file.shown("forest", json!([{ "attributes": { "POSITION": position } }]));
+    let moves = file.floats(&[0.0; 6], 3);
+    let sizes = file.floats(&[1.0; 3], 3);
+    let own = json!({ "SCALE": sizes, "TRANSLATION": moves });
+    file.json["nodes"][node]["extensions"] = json!({ "EXT_mesh_gpu_instancing": { "attributes": own } });
+    let found = made(&file.bytes(), &Options::default()).expect_err("it is refused");
+    assert!(found.contains("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/TRANSLATION"), "{found}");
+    file.json["nodes"][node]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] = json!(77);
+    let found = made(&file.bytes(), &Options::default()).expect_err("it is refused");
+    assert!(found.contains("77 is no accessor"), "{found}");
+}

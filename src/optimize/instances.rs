@@ -2,7 +2,8 @@
 //!
 //! Promise: the same triangles stand at the same places. Copies stay nodes where drawing at once would lose or change something:
 //! where something hangs on one or moves it, a body stands for it, one is a mirror image (winding is told for all at once),
-//! the mesh has levels of detail in the file or states, or lines, of which three.js draws one.
+//! the mesh has levels of detail in the file or states, lines, of which three.js draws one, or takes light in, by a thickness that
+//! is counted in the units of the node.
 
 use crate::scene::{Instance, Node, Owner, Scene};
 
@@ -55,7 +56,9 @@ pub fn fold_copies(scene: &mut Scene) {
 fn is_plain(scene: &Scene, mesh: usize) -> bool {
     let mesh = &scene.meshes[mesh];
     let geometry = &scene.geometries[mesh.geometry];
-    mesh.levels.len() < 2 && geometry.wire.is_empty() && geometry.targets.is_empty()
+    let worn = mesh.materials.iter().flatten().map(|material| &scene.materials[*material]);
+    let thin = worn.into_iter().all(|material| material.optics.volume.is_none());
+    mesh.levels.len() < 2 && geometry.wire.is_empty() && geometry.targets.is_empty() && thin
 }
 
 /// Leaves out nodes that nothing refers to.

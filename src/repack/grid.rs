@@ -12,7 +12,7 @@ use serde_json::Value;
 use super::accessor::Source;
 use super::document::{Fault, as_index, list, whole};
 use super::pin::Pins;
-use super::{Options, number_list, primitives};
+use super::{Options, copies, number_list, primitives};
 use crate::geometry::number::{Bounds, single};
 
 /// Steps that a whole number of 16 bits tells apart, less one at each end for what is rounded outward.
@@ -78,10 +78,13 @@ pub(super) fn places(
     for (node, own) in list(source.root, "nodes").iter().enumerate() {
         let Some(mesh) = whole(own, "mesh") else { continue };
         let (map, scale) = scene.shows(node, own);
-        scales[mesh] = scales[mesh].max(scale);
-        if !bounds[mesh].0.is_empty() {
-            let corners = bounds[mesh].0.corners();
-            shown = shown.union(Bounds::of_points(corners.map(|corner| map.transform_point3(corner))));
+        for copy in copies::maps(source, node, own)? {
+            let copy = DMat4::from(copy);
+            scales[mesh] = scales[mesh].max(scale * magnification(&copy));
+            if !bounds[mesh].0.is_empty() {
+                let (map, corners) = (map * copy, bounds[mesh].0.corners());
+                shown = shown.union(Bounds::of_points(corners.map(|corner| map.transform_point3(corner))));
+            }
         }
     }
     let sound = |scale: f64| if scale.is_finite() && scale > 0.0 { scale } else { 1.0 };

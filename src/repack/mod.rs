@@ -13,6 +13,7 @@ mod accessor;
 mod animation;
 mod check;
 mod column;
+mod copies;
 mod document;
 mod duplicate;
 mod grid;
@@ -150,7 +151,7 @@ fn passed(
     drop_merged(&mut made);
     animation::animations(&mut made, &source, (&mut output, codec.is_some()), &mut errors)?;
     node::skins(&mut made, &source, &places, &mut output)?;
-    node::copies(&mut made, &source, &mut output)?;
+    copies::write(&mut made, &source, &places, &mut output)?;
     node::carriers(&mut made, &places);
     thickness::scale(&mut made, &places);
     let picture_bytes = pictures.read;

@@ -2,7 +2,7 @@
 //!
 //! A mesh on a grid hangs on a node of its own below the one that showed it, which keeps its place, its name and all else: what
 //! a game moves turns about the point that it was made to turn about. A mesh with a skin is taken back by the inverse bind
-//! matrices. The new nodes stand after all others, so that these keep their numbers.
+//! matrices, one that stands in many places at once by these (`copies`). The new nodes stand after all others, so that these keep their numbers.
 
 use gltf::json::accessor::ComponentType;
 use serde_json::{Value, json};
@@ -12,7 +12,7 @@ use super::column;
 use super::document::{Fault, Object, as_index, list, list_mut, whole};
 use super::grid::{Grid, MeshPlace, inverse_bind};
 use super::stream::{Content, Kind, Output};
-use super::{described, number_of, primitives};
+use super::{copies, described, number_of, primitives};
 use crate::geometry::number::single;
 
 /// That vertices name only joints that the skins of their nodes have.
@@ -56,7 +56,8 @@ pub(super) fn carriers(made: &mut Object, places: &[MeshPlace]) {
     let mut moved: Vec<Option<usize>> = vec![None; count];
     for (index, node) in list_mut(made, "nodes").iter_mut().enumerate() {
         let grid = whole(node, "mesh").and_then(|mesh| places[mesh].grid);
-        let Some(grid) = grid.filter(|_| node.get("skin").is_none()) else { continue };
+        let hangs = node.get("skin").is_none() && !copies::has_some(node);
+        let Some(grid) = grid.filter(|_| hangs) else { continue };
         let Some(own) = node.as_object_mut() else { continue };
         let step = number_of(grid.step.into());
         let mut carrier = Object::new();
@@ -167,37 +168,4 @@ fn matrices(rows: Vec<u8>, count: usize, mut told: Object, output: &mut Output) 
     told.insert("count".to_owned(), json!(count));
     told.insert("type".to_owned(), json!("MAT4"));
     output.accessor(span, told)
-}
-
-/// Copies the places where `EXT_mesh_gpu_instancing` shows a mesh.
-pub(super) fn copies(made: &mut Object, source: &Source<'_>, output: &mut Output) -> Result<(), Fault> {
-    for (index, node) in list_mut(made, "nodes").iter_mut().enumerate() {
-        let own = node.get_mut("extensions").and_then(|own| own.get_mut("EXT_mesh_gpu_instancing"));
-        let attributes = own.and_then(|own| own.get_mut("attributes")?.as_object_mut());
-        for (name, accessor) in attributes.into_iter().flatten() {
-            let known = as_index(accessor).filter(|number| *number < list(source.root, "accessors").len());
-            let Some(number) = known else {
-                let path = format!("/nodes/{index}/extensions/EXT_mesh_gpu_instancing/attributes/{name}");
-                return Err(Fault::new(path, format!("{accessor} is no accessor of the document")));
-            };
-            let elements = source.sound(number)?;
-            let column = column::copied(&elements);
-            let kind = Kind {
-                name: format!("copy {name}"),
-                content: Content::Rows,
-                stride: column.stride,
-                target: None,
-            };
-            let mut told = described(source.root, number);
-            told.insert("componentType".to_owned(), json!(column.component.as_gl_enum()));
-            told.insert("count".to_owned(), json!(elements.count));
-            told.insert("type".to_owned(), json!(column.kind));
-            if column.normalized {
-                told.insert("normalized".to_owned(), json!(true));
-            }
-            let span = output.put(&kind, column.rows);
-            *accessor = json!(output.accessor(span, told));
-        }
-    }
-    Ok(())
 }

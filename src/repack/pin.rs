@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use serde_json::Value;
 
 use super::document::{Object, as_index, list, whole};
-use super::thickness;
+use super::{copies, thickness};
 use crate::packing::POINTER;
 
 /// Extensions that refer to nothing, or whose references are followed here.
@@ -183,8 +183,12 @@ pub(super) fn pins(root: &Object) -> Pins {
         }
     }
     for node in list(root, "nodes") {
-        // Copies of a mesh stand in the units that it has.
-        let copies = node.get("extensions").is_some_and(|own| own.get("EXT_mesh_gpu_instancing").is_some());
+        // A body is as thick as its node is large, whatever its copies are.
+        let thick = |mesh: usize| {
+            super::primitives(&list(root, "meshes")[mesh]).any(|own| thickness::has_volume(root, own))
+        };
+        let copies =
+            copies::has_some(node) && (node.get("skin").is_some() || whole(node, "mesh").is_some_and(thick));
         if copies || has_unknown(node) {
             pins.meshes.extend(whole(node, "mesh"));
         }

@@ -42,6 +42,12 @@ pub(super) fn wears(primitive: &Value, material: usize) -> bool {
     worn(&mut primitive.clone()).into_iter().any(|own| as_index(own) == Some(material))
 }
 
+/// Whether a primitive wears, in one of its variants, a material that has a volume.
+pub(super) fn has_volume(root: &Object, primitive: &Value) -> bool {
+    let thick = |material: &Value| material["extensions"].get(VOLUME).is_some();
+    list(root, "materials").iter().enumerate().any(|(index, own)| thick(own) && wears(primitive, index))
+}
+
 /// Counts thicknesses in the steps of the grids. Linear in the primitives, times the materials with a volume.
 pub(super) fn scale(made: &mut Object, places: &[MeshPlace]) {
     let thickness = |material: &Value| material["extensions"][VOLUME]["thicknessFactor"].as_f64();
