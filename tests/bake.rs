@@ -23,6 +23,7 @@ mod hostile;
 mod joined;
 mod lods;
 mod lofts;
+mod mapping;
 mod morphs;
 mod motion;
 mod mutation;

@@ -10,7 +10,7 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::spec::{Shape as Kind, ShapeDefinition};
 use crate::model::{
     AlphaMode, Filter, Image, ImageHandle, ImageKind, Material, MaterialHandle, NormalMap, Optics,
-    ShapeHandle, ShapeOptions, Texture, UvMode, Wrap,
+    ShapeHandle, ShapeOptions, Texture, UvMapping, UvMode, Wrap,
 };
 
 impl Builder<'_> {
@@ -40,6 +40,13 @@ impl Builder<'_> {
             refuse(
                 "a normal map covers the shape once, and `uv-scale` repeats textures",
                 "leave `uv-scale` out",
+            );
+            return None;
+        }
+        if options.uv_mapping != UvMapping::Surface {
+            refuse(
+                "a normal map lies along the surface, and `uv-mapping` lays textures another way",
+                "leave `uv-mapping` out",
             );
             return None;
         }

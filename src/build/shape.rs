@@ -10,8 +10,8 @@ use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, Count, Shape as Kind, ShapeDefinition, ShapeReference};
 use crate::model::{
-    Density, LightmapOptions, Occlusion, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode,
-    VertexColor,
+    Density, LightmapOptions, Occlusion, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMapping,
+    UvMode, VertexColor,
 };
 
 impl Builder<'_> {
@@ -106,6 +106,12 @@ impl Builder<'_> {
                 spec::Uv::Auto => UvMode::Auto,
                 spec::Uv::Always => UvMode::Always,
                 spec::Uv::None => UvMode::None,
+            },
+            uv_mapping: match written.uv_mapping.value {
+                spec::UvMapping::Surface => UvMapping::Surface,
+                spec::UvMapping::Box => UvMapping::Box,
+                spec::UvMapping::Cylinder => UvMapping::Cylinder,
+                spec::UvMapping::Sphere => UvMapping::Sphere,
             },
             uv_scale: written.uv_scale.value,
             material,

@@ -31,7 +31,8 @@ pub use motion::{
 };
 pub use optics::{Anisotropy, Clearcoat, Iridescence, Optics, Sheen, Specular, Transmission, Volume};
 pub use shape::{
-    Density, LightmapOptions, Occlusion, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMode,
+    Density, LightmapOptions, Occlusion, Recipe, Shape, ShapeHandle, ShapeOptions, Smoothing, UvMapping,
+    UvMode,
 };
 pub use solid::{Hollow, KeptSide, PlaneCut, SolidOperation, SolidRecipe};
 pub use subdivide::SubdivisionRecipe;

@@ -116,6 +116,8 @@ pub struct ShapeOptions {
     pub crease_angle: f64,
     /// When texture coordinates are written.
     pub uv: UvMode,
+    /// How a texture lies on it.
+    pub uv_mapping: UvMapping,
     /// Repeats of the texture.
     pub uv_scale: DVec2,
     /// Colors of its vertices.
@@ -138,6 +140,7 @@ impl ShapeOptions {
         smoothing: Smoothing::Auto,
         crease_angle: 30.0,
         uv: UvMode::Auto,
+        uv_mapping: UvMapping::Surface,
         uv_scale: DVec2::ONE,
         material: None,
         vertex_color: None,
@@ -187,6 +190,19 @@ pub enum Smoothing {
     Flat,
     /// Everywhere.
     Smooth,
+}
+
+/// How a texture lies on a shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UvMapping {
+    /// Along the parameters of its surfaces, or as its file says.
+    Surface,
+    /// From the six sides.
+    Box,
+    /// Around the y axis and along it.
+    Cylinder,
+    /// Around the y axis and from pole to pole.
+    Sphere,
 }
 
 /// When texture coordinates are written.

@@ -20,6 +20,7 @@ mod leaning;
 mod level;
 mod limit;
 mod made_bytes;
+mod mapping;
 mod material;
 mod morph;
 mod motion;

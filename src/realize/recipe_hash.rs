@@ -152,6 +152,7 @@ fn own(recipe: &Recipe, options: &ShapeOptions) -> Hash {
         smoothing,
         crease_angle,
         uv,
+        uv_mapping,
         uv_scale,
         vertex_color,
         material: _,
@@ -161,7 +162,8 @@ fn own(recipe: &Recipe, options: &ShapeOptions) -> Hash {
         occlusion: _,
     } = options;
     let mut feed = Feed::new();
-    feed.add(&(tolerance, density, smoothing, crease_angle, uv, uv_scale)).add(&(vertex_color, placement));
+    feed.add(&(tolerance, density, smoothing, crease_angle, uv, uv_mapping, uv_scale));
+    feed.add(&(vertex_color, placement));
     match recipe {
         Recipe::Assembly(parts) => {
             feed.add(&"assembly");

@@ -5,6 +5,7 @@ use glam::{DAffine3, DMat3};
 use super::extents::Extents;
 use super::inherited::Inherited;
 use super::limit::{self, Cost};
+use super::mapping::lay;
 use super::material::{middle, own_or, show_normals, source_of, split_by_element};
 use super::reach::bent;
 use super::source::source_count;
@@ -159,6 +160,9 @@ impl<'a> Maker<'a> {
                 made
             }
         };
+        if uv {
+            lay(&mut made.mesh, shape.options.uv_mapping);
+        }
         if shape.options.uv_scale != glam::DVec2::ONE && uv {
             for vertex in &mut made.mesh.vertices {
                 vertex.uv *= shape.options.uv_scale;

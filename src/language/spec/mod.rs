@@ -154,7 +154,7 @@ pub use reference::{
 };
 pub use ruled::{End, Ruled, Translational};
 pub use scaling::{Blend, Factor, ScaleStation, Scaling};
-pub use shape::{Shape, ShapeDefinition, ShapeOptions, Smoothing, Uv};
+pub use shape::{Shape, ShapeDefinition, ShapeOptions, Smoothing, Uv, UvMapping};
 pub use skeleton::{AxisRanges, Chain, Joint as SkeletonJoint, MirrorAxis, Skeleton, SkeletonImport, Socket};
 pub use skin::{Skin, SkinBump, SkinWeight, WeightRule};
 pub use solid::{Cut, Hull, Keep, MinkowskiRound, Shell, SolidFormula, SolidSet, WallSide};

@@ -66,6 +66,8 @@ table! {
         crease_angle: Sp<f64> = 30.0 => Check::within(0.0, 180.0);
         /// When texture coordinates are written.
         uv: Sp<Uv> = Uv::Auto;
+        /// How a texture lies on it, before `scale`, `rotate` and `at`.
+        uv_mapping: Sp<UvMapping> = UvMapping::Surface;
         /// How often a texture repeats along u and v.
         uv_scale: Sp<DVec2> = DVec2::ONE => Check::nonzero();
         /// Colors of its vertices, which multiply that of the material and those that its parts or its file have: `"#rrggbb"`,
@@ -98,6 +100,22 @@ choices! {
         Flat = "flat";
         /// Smooth everywhere.
         Smooth = "smooth";
+    }
+}
+
+choices! {
+    /// How a texture lies on a shape.
+    UvMapping {
+        /// As the surface goes: along its two parameters, or as its file or its list of `uvs` says.
+        Surface = "surface";
+        /// Onto each triangle from that of the six sides which it faces most, upright and unmirrored; one picture is as wide and as
+        /// high as the document's unit.
+        Box = "box";
+        /// Once around the y axis, with the middle of the picture in front, and up along it, one picture as high as the
+        /// document's unit; onto what faces up or down as with "box".
+        Cylinder = "cylinder";
+        /// Once around the y axis, with the middle of the picture in front, and once from top to bottom, as a map of the world.
+        Sphere = "sphere";
     }
 }
 
