@@ -1,15 +1,15 @@
 //! Elements of a skeleton: points, segments, polygons and curves, with the distances to them.
 //!
-//! Promise: nearest points are exact to rounding, of curves too (chords find the piece, Newton's method the place).
-//! Bounds over a ball hold for every point in it: distances change no faster than places, and the way to the nearest
-//! point of a convex set no faster either; of what is not convex every piece that may be nearest is looked at.
+//! Promise: nearest points are exact to rounding. Bounds over a ball hold for every point in it: distances change no
+//! faster than places, and the way to the nearest point of a convex set no faster either; of what is not convex every
+//! piece that may be nearest is looked at.
 
 use glam::DVec3;
 
-use crate::geometry::curve::{AnyCurve, Curve, Side};
 use crate::geometry::mesh::nearest::nearest_of_triangle;
 use crate::geometry::number::Bounds;
 
+use super::line::Line;
 use super::skeleton::Potential;
 
 /// A part of a skeleton and the potential around it.
@@ -36,96 +36,34 @@ pub enum Form {
     Curves(Vec<Line>),
 }
 
-/// A curve and chords along it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Line {
-    curve: AnyCurve,
-    /// Parameters and places along it; joints among them.
-    stops: Vec<(f64, DVec3)>,
-    /// How far the curve is from its chords at most.
-    out: f64,
-}
-
-/// Chords between joints of a curve.
-const CHORDS: u32 = 24;
-
-impl Line {
-    /// A curve of the language.
-    #[must_use]
-    pub fn new(curve: &AnyCurve) -> Self {
-        let domain = curve.domain();
-        let mut ends = vec![domain.start];
-        ends.extend(curve.joints());
-        ends.push(domain.end);
-        let mut stops = vec![(domain.start, curve.point(domain.start))];
-        let mut out: f64 = 0.0;
-        // A curve of many joints has short pieces.
-        let chords = (CHORDS * 4 / u32::try_from(ends.len()).unwrap_or(CHORDS)).clamp(1, CHORDS);
-        for pair in ends.windows(2) {
-            for k in 1..=chords {
-                let share = f64::from(k) / f64::from(chords);
-                let t = if k == chords { pair[1] } else { pair[0] + (pair[1] - pair[0]) * share };
-                let before = stops[stops.len() - 1].0;
-                out = out.max(curve.chord_deviation(before, t));
-                stops.push((t, curve.evaluate(t, Side::Before).point));
-            }
-        }
-        Self { curve: curve.clone(), stops, out }
-    }
-
-    fn nearest(&self, point: DVec3) -> DVec3 {
-        let mut best = (f64::INFINITY, 0, 0.0);
-        for (k, pair) in self.stops.windows(2).enumerate() {
-            let share = share_of(pair[0].1, pair[1].1, point);
-            let square = point.distance_squared(pair[0].1.lerp(pair[1].1, share));
-            if square < best.0 {
-                best = (square, k, share);
-            }
-        }
-        let (mut found, mut place) = self.polished(point, best.1, best.2);
-        // Beside its chord the curve may be nearer to a neighbor.
-        for k in [best.1.checked_sub(1), Some(best.1 + 1)].into_iter().flatten() {
-            if k + 1 < self.stops.len() && self.out > 0.0 {
-                let (square, other) = self.polished(point, k, if k < best.1 { 1.0 } else { 0.0 });
-                if square < found {
-                    (found, place) = (square, other);
-                }
-            }
-        }
-        place
-    }
-
-    /// The nearest point of one piece, from a share of its chord.
-    fn polished(&self, point: DVec3, piece: usize, share: f64) -> (f64, DVec3) {
-        let ((low, a), (high, b)) = (self.stops[piece], self.stops[piece + 1]);
-        if self.out == 0.0 {
-            let place = a.lerp(b, share);
-            return (place.distance_squared(point), place);
-        }
-        let mut t = low + (high - low) * share;
-        let at = |t: f64| self.curve.evaluate(t, if t >= high { Side::Before } else { Side::After });
-        let mut jet = at(t);
-        for _ in 0..12 {
-            let away = jet.point - point;
-            let slope = away.dot(jet.first);
-            let bend = jet.first.length_squared() + away.dot(jet.second);
-            let bend = if bend > 0.0 { bend } else { jet.first.length_squared() };
-            let next = (t - slope / bend).clamp(low, high);
-            if !(next - t).is_normal() || (next - t).abs() <= 1e-15 * (high - low) {
-                break;
-            }
-            t = next;
-            jet = at(t);
-        }
-        (jet.point.distance_squared(point), jet.point)
-    }
-}
-
 /// Where on a segment the nearest point lies, from 0 to 1.
-fn share_of(a: DVec3, b: DVec3, point: DVec3) -> f64 {
+pub(super) fn share_of(a: DVec3, b: DVec3, point: DVec3) -> f64 {
     let along = b - a;
     let square = along.length_squared();
     if square > 0.0 { ((point - a).dot(along) / square).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+/// What is known of the ways from an element to the points of a ball.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ways {
+    /// A box that holds them.
+    pub(super) within: Bounds,
+    /// Whether they are known not to jump.
+    pub(super) smooth: bool,
+}
+
+impl Default for Ways {
+    fn default() -> Self {
+        Self { within: Bounds::EMPTY, smooth: true }
+    }
+}
+
+impl Ways {
+    /// Adds those from another part of the element.
+    pub(super) fn add(&mut self, other: Self) {
+        self.smooth &= other.smooth && self.within.is_empty();
+        self.within = self.within.union(other.within);
+    }
 }
 
 impl Form {
@@ -147,25 +85,23 @@ impl Form {
         }
     }
 
-    /// A box that holds the ways of all points within `radius` of `center`.
-    pub(super) fn ways(&self, center: DVec3, radius: f64) -> Bounds {
-        let around = |way: DVec3| Bounds { min: way - radius, max: way + radius };
-        let convex = self.pieces() == 1;
+    /// The ways of all points within `radius` of `center`.
+    pub(super) fn ways(&self, center: DVec3, radius: f64) -> Ways {
+        let around =
+            |way: DVec3| Ways { within: Bounds { min: way - radius, max: way + radius }, smooth: true };
         let own = self.away(center);
-        if convex {
-            return around(own);
-        }
         let reach = own.length() + 2.0 * radius;
-        let out = if let Self::Curves(lines) = self {
-            lines.iter().map(|line| line.out).fold(0.0, f64::max)
-        } else {
-            0.0
-        };
-        let mut all = around(own);
-        for way in self.piece_ways(center) {
-            if way.length() - out <= reach {
-                let wide = around(way);
-                all = all.union(Bounds { min: wide.min - 2.0 * out, max: wide.max + 2.0 * out });
+        let mut all = Ways::default();
+        match self {
+            Self::Point(_) | Self::Segment(..) => all = around(own),
+            Self::Triangles(corners) => {
+                let ways = corners.iter().map(|corners| center - nearest_of_triangle(*corners, center));
+                ways.filter(|way| way.length() <= reach).for_each(|way| all.add(around(way)));
+            }
+            Self::Curves(lines) => {
+                for line in lines {
+                    line.add_ways((center, radius), reach, &mut all);
+                }
             }
         }
         all
@@ -173,29 +109,10 @@ impl Form {
 
     /// Whether the way to its nearest place never jumps.
     pub(super) fn is_convex(&self) -> bool {
-        self.pieces() == 1
-    }
-
-    fn pieces(&self) -> usize {
         match self {
-            Self::Point(_) | Self::Segment(..) => 1,
-            Self::Triangles(all) => all.len(),
-            Self::Curves(lines) => lines.iter().map(|line| line.stops.len() - 1).sum(),
-        }
-    }
-
-    /// The ways from all pieces; of a curve from its chords.
-    fn piece_ways(&self, point: DVec3) -> Vec<DVec3> {
-        match self {
-            Self::Point(_) | Self::Segment(..) => vec![self.away(point)],
-            Self::Triangles(all) => {
-                all.iter().map(|corners| point - nearest_of_triangle(*corners, point)).collect()
-            }
-            Self::Curves(lines) => lines
-                .iter()
-                .flat_map(|line| line.stops.windows(2))
-                .map(|pair| point - pair[0].1.lerp(pair[1].1, share_of(pair[0].1, pair[1].1, point)))
-                .collect(),
+            Self::Point(_) | Self::Segment(..) => true,
+            Self::Triangles(all) => all.len() == 1,
+            Self::Curves(lines) => lines.len() == 1 && lines[0].is_straight(),
         }
     }
 
@@ -205,13 +122,7 @@ impl Form {
             Self::Point(center) => Bounds { min: *center, max: *center },
             Self::Segment(a, b) => Bounds::of_points([*a, *b]),
             Self::Triangles(all) => Bounds::of_points(all.iter().flatten().copied()),
-            Self::Curves(lines) => {
-                let of_line = |line: &Line| {
-                    let chords = Bounds::of_points(line.stops.iter().map(|stop| stop.1));
-                    Bounds { min: chords.min - line.out, max: chords.max + line.out }
-                };
-                lines.iter().map(of_line).fold(Bounds::EMPTY, Bounds::union)
-            }
+            Self::Curves(lines) => lines.iter().map(Line::bounds).fold(Bounds::EMPTY, Bounds::union),
         }
     }
 }

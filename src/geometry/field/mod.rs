@@ -7,6 +7,7 @@ mod any;
 mod bump;
 mod element;
 mod join;
+mod line;
 mod primitive;
 pub mod quadric;
 mod relief;
@@ -18,8 +19,9 @@ mod tree;
 
 pub use any::AnyField;
 pub use bump::{Bump, Perturbed};
-pub use element::{Element, Form, Line};
+pub use element::{Element, Form};
 pub use join::{Blend, Join};
+pub use line::Line;
 pub use primitive::Primitive;
 pub use quadric::Quadric;
 pub use relief::{Relief, ReliefBump, Zone};

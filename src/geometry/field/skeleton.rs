@@ -11,7 +11,7 @@
 use glam::DVec3;
 
 use super::{Element, Form, Study};
-use crate::geometry::formula::Interval;
+use crate::geometry::formula::{Interval, Quality};
 use crate::geometry::number::{Bounds, exp, ln};
 
 /// How a potential of strength 1 falls off with the distance d.
@@ -43,6 +43,11 @@ impl Potential {
             Self::Gaussian { .. } => f64::INFINITY,
             Self::Power { radius, .. } | Self::Wyvill { radius } => radius * radius,
         }
+    }
+
+    /// Whether it ends with a slope.
+    fn ends_hard(self) -> bool {
+        matches!(self, Self::Power { exponent: 1, .. })
     }
 
     /// The value at the square of a distance.
@@ -124,7 +129,7 @@ impl Skeleton {
             Form::Point(_) | Form::Segment(..) => 1,
             Form::Triangles(all) => all.len() as u64,
             // The nearest place of a curve takes several steps.
-            Form::Curves(all) => 16 * all.len() as u64,
+            Form::Curves(all) => 8 * all.len() as u64,
         };
         self.elements.iter().map(of).sum::<u64>().max(1)
     }
@@ -179,8 +184,7 @@ impl Skeleton {
     /// Whether its surface may have edges: where a potential ends with a slope, or the nearest place of an element jumps.
     #[must_use]
     pub fn has_kinks(&self) -> bool {
-        let ends_hard = |element: &Element| matches!(element.potential, Potential::Power { exponent: 1, .. });
-        self.elements.iter().any(|element| ends_hard(element) || !element.form.is_convex())
+        self.elements.iter().any(|element| element.potential.ends_hard() || !element.form.is_convex())
     }
 
     /// What each element adds at a point; negative ones take away.
@@ -198,6 +202,7 @@ impl Skeleton {
         let (center, radius) = (within.center(), within.diagonal() / 2.0);
         let (mut low, mut high) = (self.level, self.level);
         let mut gradient = [[0.0; 2]; 3];
+        let mut quality = Quality::Smooth;
         for (element, reach) in self.elements.iter().zip(&self.boxes) {
             if within.min.cmpgt(reach.max).any() || within.max.cmplt(reach.min).any() {
                 continue;
@@ -212,7 +217,12 @@ impl Skeleton {
             high -= values[0].min(values[1]);
             let slopes =
                 [potential.slope(squares.0), potential.slope(squares.1)].map(|slope| -2.0 * strength * slope);
-            let (min, max) = (ways.min.to_array(), ways.max.to_array());
+            let end = potential.end();
+            let ends_here = potential.ends_hard() && squares.0 <= end && end <= squares.1;
+            if ends_here || !ways.smooth {
+                quality = Quality::Continuous;
+            }
+            let (min, max) = (ways.within.min.to_array(), ways.within.max.to_array());
             for axis in 0..3 {
                 let products = [
                     slopes[0] * min[axis],
@@ -230,7 +240,10 @@ impl Skeleton {
             let slack = 1e-13 * (low.abs() + high.abs());
             Interval::new(low - slack, high + slack)
         };
-        Study { value: Interval::new(low - slack, high + slack), gradient: gradient.map(wide) }
+        Study {
+            value: Interval::new(low - slack, high + slack).at_best(quality),
+            gradient: gradient.map(wide),
+        }
     }
 
     /// A bound on second derivatives anywhere, of elements whose distance is smooth.

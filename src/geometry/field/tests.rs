@@ -3,9 +3,10 @@
 use glam::{DAffine3, DVec3};
 
 use super::{
-    AnyField, Blend, Bump, Element, Field, Form, Join, Joined, Perturbed, Placed, Potential, Primitive,
+    AnyField, Blend, Bump, Element, Field, Form, Join, Joined, Line, Perturbed, Placed, Potential, Primitive,
     Skeleton,
 };
+use crate::geometry::curve::{AnyCurve, Curve, interpolate};
 use crate::geometry::number::Bounds;
 
 fn all() -> Vec<AnyField> {
@@ -45,6 +46,28 @@ fn all() -> Vec<AnyField> {
     ]
 }
 
+/// A curve that turns back on itself, in half of the space that places come from.
+fn hairpin() -> AnyCurve {
+    let points = [[-0.5, -0.3, 0.1], [0.5, 0.0, 0.3], [0.45, 0.1, 0.25], [-0.4, 0.2, -0.3]].map(DVec3::from);
+    AnyCurve::Bezier(interpolate(&points, &[0.0, 1.0, 1.2, 2.2]).expect("distinct"))
+}
+
+/// Skeletons whose nearest places jump, or whose potentials end with a slope.
+fn kinked() -> Vec<AnyField> {
+    let corners = [[-0.6, 0.1, 0.0], [0.4, 0.5, 0.1], [0.5, -0.4, 0.0], [-0.1, -0.7, -0.2]].map(DVec3::from);
+    let [a, b, c, d] = corners;
+    let line = || Form::Curves(vec![Line::new(&hairpin())]);
+    let one = |form: Form, potential: Potential| {
+        AnyField::Skeleton(Box::new(Skeleton::new(vec![Element { form, potential, strength: 1.2 }], 0.5)))
+    };
+    vec![
+        one(line(), Potential::Gaussian { sharpness: 5.0 }),
+        one(line(), Potential::Wyvill { radius: 0.9 }),
+        one(line(), Potential::Power { radius: 0.7, exponent: 1 }),
+        one(Form::Triangles(vec![[a, b, c], [a, c, d]]), Potential::Power { radius: 0.8, exponent: 2 }),
+    ]
+}
+
 /// Places that lie on no kink of the fields above.
 fn places() -> impl Iterator<Item = DVec3> {
     (0..200_u32).map(|k| {
@@ -73,9 +96,9 @@ fn gradients_are_differences_of_values() {
 
 #[test]
 fn ranges_hold_values_and_gradients() {
-    for field in all() {
+    for field in all().into_iter().chain(kinked()) {
         for (k, place) in places().enumerate().step_by(3) {
-            let half = DVec3::new(0.02, 0.05, 0.03) * (1.0 + (k % 5) as f64);
+            let half = DVec3::new(0.02, 0.05, 0.03) * [0.05, 1.0, 2.0, 3.0, 5.0][k % 5];
             let study = field.study(&Bounds { min: place - half, max: place + half });
             for part in places() {
                 let inside = place + half * part;
@@ -90,5 +113,20 @@ fn ranges_hold_values_and_gradients() {
                 }
             }
         }
+    }
+}
+
+/// No place of a curve is nearer than the nearest, found among very many.
+#[test]
+fn nearest_places_of_curves_are_the_nearest() {
+    let curve = hairpin();
+    let domain = curve.domain();
+    let all: Vec<DVec3> = (0..=20_000).map(|k| curve.point(domain.at(f64::from(k) / 20_000.0))).collect();
+    let line = Line::new(&curve);
+    for place in places() {
+        let least = all.iter().map(|point| point.distance(place)).fold(f64::INFINITY, f64::min);
+        let found = line.nearest(place).distance(place);
+        // Half a step of those many along the curve.
+        assert!(found <= least + 1e-12 && least <= found + 1e-7, "{found} of {least} at {place}");
     }
 }

@@ -231,20 +231,30 @@ pub enum TessellateError {
         place: DVec3,
     },
     /// A surface whose triangles do not become sound, as where it touches itself.
-    #[error(
-        "near {} its triangles {}",
-        told(*place),
-        if *crossing { "cross each other" } else { "stay further from it than the tolerance" }
-    )]
+    #[error("near {} {flaw}", told(*place))]
     Unsound {
         /// Where.
         place: DVec3,
-        /// Whether triangles cross; otherwise they are too far off.
-        crossing: bool,
+        /// In what way.
+        flaw: Flaw,
     },
     /// A field whose surface would take too long to find.
     #[error("to find its surface takes too many steps")]
     TooMuchWork,
+}
+
+/// Why triangles of a field's surface are not sound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Flaw {
+    /// They cross each other.
+    #[error("its triangles cross each other")]
+    Crossing,
+    /// They are too far from the surface.
+    #[error("its triangles stay further from it than the tolerance")]
+    Far,
+    /// They are joined in another way at every size.
+    #[error("its parts touch, or are too near or thin to be told apart")]
+    Touching,
 }
 
 /// A place for a person: no more digits than it takes to find it.

@@ -15,6 +15,7 @@ use std::hash::{BuildHasherDefault, Hasher};
 use glam::DVec3;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
+use super::zones::Zones;
 use crate::geometry::field::{AnyField, Field, Study};
 use crate::geometry::formula::Quality;
 use crate::geometry::number::{Bounds, floor_count};
@@ -158,19 +159,21 @@ pub(super) struct Cells {
 
 /// How far to search.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Search {
+pub(super) struct Search<'a> {
     /// Where bounds prove nothing cells are cut down to this size; a share of the box where it is not given.
     pub(super) least: Option<f64>,
     /// The most cells to look at.
     pub(super) limit: usize,
     /// No cell of the surface is larger than this.
     pub(super) largest: f64,
+    /// Where they are smaller.
+    pub(super) zones: &'a Zones,
 }
 
 struct Finder<'a> {
     field: &'a AnyField,
     lattice: Lattice,
-    search: Search,
+    search: Search<'a>,
     kinks: bool,
     cut: QuickSet,
     leaves: QuickSet,
@@ -181,7 +184,7 @@ struct Finder<'a> {
 
 impl Cells {
     /// Searches a box; more cells than `limit` end it.
-    pub(super) fn find(field: &AnyField, within: &Bounds, search: Search) -> Self {
+    pub(super) fn find(field: &AnyField, within: &Bounds, search: Search<'_>) -> Self {
         let lattice = Lattice::around(within);
         let mut finder = Finder {
             field,
@@ -269,13 +272,14 @@ impl Finder<'_> {
         value > reach * (1.0 + 1e-9) + 1e-12 * value
     }
 
-    /// How deep cells of a finding are cut.
-    fn depth(&self, finding: Finding) -> u32 {
+    /// How deep a cell of a finding is cut.
+    fn depth(&self, cell: Cell, finding: Finding) -> u32 {
         let level = |size: f64| {
             let coarse = self.lattice.unit * f64::from(1_u32 << (DEEPEST + 1));
             (0..DEEPEST).find(|level| coarse / f64::from(1_u32 << level) <= size).unwrap_or(DEEPEST)
         };
-        match finding {
+        let least = self.search.zones.cell(&self.lattice.bounds(cell)).map_or(0, level);
+        least.max(match finding {
             Finding::Empty => 0,
             Finding::Graph => level(self.search.largest),
             Finding::Crest => level(self.search.largest / 2.0),
@@ -283,7 +287,7 @@ impl Finder<'_> {
             Finding::Smooth if self.kinks => SAMPLED + 2,
             Finding::Smooth => DEEPEST - 2,
             Finding::Kinked | Finding::Unknown => self.search.least.map_or(SAMPLED, level),
-        }
+        })
     }
 
     /// Settles the cells of one level; the cells of the next.
@@ -300,7 +304,7 @@ impl Finder<'_> {
                 self.lost = self.field.value(center).is_nan().then_some(center);
             }
             let full = self.seen + next.len() > self.search.limit;
-            if cell.level < self.depth(finding) && !full {
+            if cell.level < self.depth(*cell, finding) && !full {
                 self.cut.insert(cell.key());
                 next.extend(cell.children());
             } else {

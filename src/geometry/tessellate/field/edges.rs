@@ -38,14 +38,14 @@ impl Probe<'_> {
         let plane = |(place, normal): (DVec3, DVec3)| (normal.dot(place), normal);
         let middle = from.0.midpoint(to.0);
         let found = meet(middle, [plane(from), plane(to)])?;
-        (found.distance(middle) <= 4.0 * from.0.distance(to.0)).then_some(found)
+        (found.distance(middle) <= 4.0 * from.0.distance(to.0)).then(|| self.onto(found, from.1 + to.1))
     }
 
     /// The normal at a corner of a triangle, of the side that the triangle is on.
     pub(super) fn corner_normal(&self, skin: &Skin, corner: u32, middle: DVec3) -> DVec3 {
         match skin.kind(corner) {
             Kind::Smooth => skin.normal(corner),
-            Kind::Edge | Kind::Corner => self.normal_towards(skin.point(corner), middle, ASIDE),
+            Kind::Edge | Kind::Corner | Kind::Held => self.normal_towards(skin.point(corner), middle, ASIDE),
         }
     }
 
@@ -123,7 +123,7 @@ impl Probe<'_> {
         }
         self.drop_islands(skin);
         for index in 0..mesh::index(skin.points.len()) {
-            if skin.kind(index) == Kind::Smooth || skin.starts[index as usize] == NONE {
+            if matches!(skin.kind(index), Kind::Smooth | Kind::Held) || skin.starts[index as usize] == NONE {
                 continue;
             }
             let count = skin.around(index).filter(|half| skin.is_sharp(*half)).count();

@@ -8,7 +8,8 @@
 //! of the field are counted.
 //!
 //! The way: [`cells`] finds where the surface runs, [`mod@march`] makes first triangles that are sound by construction,
-//! [`edges`] finds the edges of the surface, [`refine`] makes few triangles of many, and what comes out is checked.
+//! [`edges`] finds the edges of the surface, [`refine`] makes few triangles of many, and what comes out is checked. Where
+//! it is not sound all is made again, with [`zones`] in which small first triangles stay.
 
 mod cells;
 mod dress;
@@ -21,20 +22,23 @@ mod skin;
 #[cfg(test)]
 mod tests;
 mod untangle;
+mod zones;
 
 use glam::DVec3;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
-use super::{Detail, Deviation, Evidence, SurfaceDensity, TessellateError, Tessellation};
+use super::{Detail, Deviation, Evidence, Flaw, SurfaceDensity, TessellateError, Tessellation};
 use crate::geometry::field::AnyField;
 use crate::geometry::mesh;
 use crate::geometry::mesh::crossing::crossings;
+use crate::geometry::mesh::topology;
 use crate::geometry::number::{Bounds, floor_large, single};
 use cells::{Cells, Search};
 use march::{NoValue, march};
 use probe::{Probe, Work};
 use refine::{Changed, Refiner};
 use skin::{Kind, Skin};
+use zones::{Wrong, Zones};
 
 /// The surface of a field inside a box.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,8 +63,12 @@ const MOST_SPARE: usize = 2;
 const MARGIN: f64 = 1.06;
 /// How often triangles that are too far off or cross are made smaller.
 const REPAIRS: u32 = 14;
-/// So many triangles that cross or are too far off are always worth another try.
-const MOST_TANGLED: usize = 1 << 10;
+/// How many repairs in a row may bring nothing.
+const PATIENCE: u32 = 4;
+/// How often a surface is made, each time with more of its first triangles kept.
+const ATTEMPTS: u32 = 8;
+/// How often first triangles in zones may be joined in another way where they are half as large.
+const MOST_UNSETTLED: u32 = 2;
 /// Places in a triangle, by the shares of its corners: those of a lattice that cuts its sides in six, without the corners.
 const SAMPLES: [[f64; 3]; 25] = {
     let mut all = [[0.0; 3]; 25];
@@ -94,11 +102,27 @@ impl FieldSurface {
         self.within.diagonal()
     }
 
-    fn cells(&self) -> Cells {
+    fn cells(&self, zones: &Zones) -> Cells {
         let largest = (self.within.max - self.within.min).max_element() / 8.0;
         let most = (CELL_BUDGET / self.field.weight()).min(MOST_CELLS);
         let limit = usize::try_from(most).unwrap_or(usize::MAX);
-        Cells::find(&self.field, &self.within, Search { least: self.least, limit, largest })
+        Cells::find(&self.field, &self.within, Search { least: self.least, limit, largest, zones })
+    }
+
+    /// Whether first triangles are joined in the same way where those in zones are half as large. Where parts of the surface
+    /// touch it is another way at every size.
+    fn is_settled(&self, detail: &Detail, zones: &Zones) -> bool {
+        if zones.is_empty() {
+            return true;
+        }
+        let most = usize::try_from(detail.triangle_limit).unwrap_or(usize::MAX).max(1000).saturating_mul(8);
+        let [one, other] = [zones, &zones.halved()].map(|zones| {
+            let cells = self.cells(zones);
+            let rough = march(&self.field, &cells, most.min(MOST_TRIANGLES)).ok().flatten()?;
+            let found = topology::of_triangles(&rough.triangles, rough.points.len()).ok()?;
+            (!cells.short).then_some((found.components, found.euler))
+        });
+        one.is_some() && one == other
     }
 
     /// A point of a mesh that is not in the box, by more than rounding.
@@ -120,43 +144,93 @@ pub fn field_surface(shape: &FieldSurface, detail: &Detail) -> Result<Tessellati
         // Cells along the longest side take the place of steps.
         SurfaceDensity::Grid { u, v } => shape.size() / f64::from(u.max(v).max(4)) / 8.0,
     };
-    let field = &shape.field;
-    let cells = shape.cells();
-    if let Some(place) = cells.lost {
-        return Err(TessellateError::NoValue { place });
+    let mut zones = Zones::default();
+    let (mut last, mut unsettled) = (None, 0);
+    for attempt in 1.. {
+        let fault = match shape.made(detail, tolerance, &zones) {
+            Ok(made) if shape.is_settled(detail, &zones) => return Ok(made),
+            Ok(_) => {
+                unsettled += 1;
+                Fault::Unsound { wrong: zones.coarse(), flaw: Flaw::Touching }
+            }
+            Err(fault) => fault,
+        };
+        match (fault, last) {
+            (Fault::Unsound { wrong, flaw }, _) => {
+                let place = if flaw == Flaw::Touching { zones.middle() } else { wrong[0].place };
+                let error = TessellateError::Unsound { place, flaw };
+                if attempt == ATTEMPTS || unsettled == MOST_UNSETTLED || !zones.grow(&wrong, tolerance) {
+                    return Err(error);
+                }
+                last = Some(error);
+            }
+            // Only because of small triangles in zones.
+            (Fault::Ended(TessellateError::TooMuchWork | TessellateError::TooMany { .. }), Some(error)) => {
+                return Err(error);
+            }
+            (Fault::Ended(error), _) => return Err(error),
+        }
     }
-    if cells.short {
-        return Err(TessellateError::TooMuchWork);
+    unreachable!("attempts end")
+}
+
+/// Why triangles were not made.
+enum Fault {
+    /// They are wrong at these places.
+    Unsound { wrong: Vec<Wrong>, flaw: Flaw },
+    /// Another way will not help.
+    Ended(TessellateError),
+}
+
+impl From<TessellateError> for Fault {
+    fn from(error: TessellateError) -> Self {
+        Self::Ended(error)
     }
-    let limit = usize::try_from(detail.triangle_limit).unwrap_or(usize::MAX).max(1000);
-    let too_many =
-        |needed: usize| TessellateError::TooMany { needed: needed as u64, limit: detail.triangle_limit };
-    // First triangles are many, and become few.
-    let most = limit.saturating_mul(8);
-    let rough = march(field, &cells, most.min(MOST_TRIANGLES))
-        .map_err(|NoValue(place)| TessellateError::NoValue { place })?;
-    let Some(rough) = rough else {
-        let error = if most <= MOST_TRIANGLES { too_many(limit + 1) } else { TessellateError::TooMuchWork };
-        return Err(error);
-    };
-    if rough.triangles.is_empty() {
-        return Err(TessellateError::NoSurface);
+}
+
+impl FieldSurface {
+    /// Triangles within a tolerance; in the zones first triangles stay.
+    fn made(&self, detail: &Detail, tolerance: f64, zones: &Zones) -> Result<Tessellation, Fault> {
+        let field = &self.field;
+        let cells = self.cells(zones);
+        if let Some(place) = cells.lost {
+            return Err(TessellateError::NoValue { place }.into());
+        }
+        if cells.short {
+            return Err(TessellateError::TooMuchWork.into());
+        }
+        let limit = usize::try_from(detail.triangle_limit).unwrap_or(usize::MAX).max(1000);
+        let too_many =
+            |needed: usize| TessellateError::TooMany { needed: needed as u64, limit: detail.triangle_limit };
+        // First triangles are many, and become few.
+        let most = limit.saturating_mul(8);
+        let rough = march(field, &cells, most.min(MOST_TRIANGLES))
+            .map_err(|NoValue(place)| TessellateError::NoValue { place })?;
+        let Some(rough) = rough else {
+            let error =
+                if most <= MOST_TRIANGLES { too_many(limit + 1) } else { TessellateError::TooMuchWork };
+            return Err(error.into());
+        };
+        if rough.triangles.is_empty() {
+            return Err(TessellateError::NoSurface.into());
+        }
+        let leaves = |place: DVec3| TessellateError::LeavesBox {
+            place: place.clamp(self.within.min, self.within.max),
+        };
+        let skin = Skin::new(rough.points, rough.triangles).map_err(leaves)?;
+        let work = Work::default();
+        let probe = Probe { field, size: self.size(), work: &work };
+        let maker = Maker { probe, kinks: field.has_kinks(), tolerance, limit, zones };
+        let (refiner, bound) = maker.refined(skin, &rough.brackets)?;
+        let made = dress::dress(&refiner, self, detail);
+        if let Some(place) = self.outside(&made.points) {
+            return Err(leaves(place).into());
+        }
+        if made.triangles.len() as u64 > detail.triangle_limit {
+            return Err(too_many(made.triangles.len()).into());
+        }
+        Ok(Tessellation { mesh: made, deviation: Deviation::new(bound, Evidence::Sampled) })
     }
-    let leaves =
-        |place: DVec3| TessellateError::LeavesBox { place: place.clamp(shape.within.min, shape.within.max) };
-    let skin = Skin::new(rough.points, rough.triangles).map_err(leaves)?;
-    let work = Work::default();
-    let probe = Probe { field, size: shape.size(), work: &work };
-    let maker = Maker { probe, kinks: field.has_kinks(), tolerance, limit };
-    let (refiner, bound) = maker.refined(skin, &rough.brackets)?;
-    let made = dress::dress(&refiner, shape, detail);
-    if let Some(place) = shape.outside(&made.points) {
-        return Err(leaves(place));
-    }
-    if made.triangles.len() as u64 > detail.triangle_limit {
-        return Err(too_many(made.triangles.len()));
-    }
-    Ok(Tessellation { mesh: made, deviation: Deviation::new(bound, Evidence::Sampled) })
 }
 
 /// What makes good triangles of rough ones.
@@ -166,21 +240,19 @@ struct Maker<'a> {
     kinks: bool,
     tolerance: f64,
     limit: usize,
+    zones: &'a Zones,
 }
 
 impl<'a> Maker<'a> {
-    fn refined(
-        &self,
-        mut skin: Skin,
-        brackets: &[[DVec3; 2]],
-    ) -> Result<(Refiner<'a>, f64), TessellateError> {
+    fn refined(&self, mut skin: Skin, brackets: &[[DVec3; 2]]) -> Result<(Refiner<'a>, f64), Fault> {
         self.settle(&mut skin, brackets);
         let least = estimate::least_triangles(&skin, self.kinks, self.tolerance);
         if least > self.limit as f64 {
-            return Err(TessellateError::TooMany { needed: floor_large(least), limit: self.limit as u64 });
+            let needed = floor_large(least);
+            return Err(TessellateError::TooMany { needed, limit: self.limit as u64 }.into());
         }
         if least > MOST_TRIANGLES as f64 {
-            return Err(TessellateError::TooMuchWork);
+            return Err(TessellateError::TooMuchWork.into());
         }
         let most = skin.triangles.len().max(self.limit.saturating_mul(MOST_SPARE).min(MOST_TRIANGLES));
         if self.kinks {
@@ -191,64 +263,61 @@ impl<'a> Maker<'a> {
             Refiner { probe: self.probe, skin, tolerance: target, limit: most, changed: Changed::default() };
         if !refiner.run() || self.probe.is_spent() {
             if self.probe.is_spent() || most <= self.limit {
-                return Err(TessellateError::TooMuchWork);
+                return Err(TessellateError::TooMuchWork.into());
             }
-            return Err(TessellateError::TooMany { needed: self.limit as u64 + 1, limit: self.limit as u64 });
+            let needed = self.limit as u64 + 1;
+            return Err(TessellateError::TooMany { needed, limit: self.limit as u64 }.into());
         }
         let mut checked = Checked::default();
-        let (mut fewest, mut nearest) = (usize::MAX, usize::MAX);
-        for round in 0..REPAIRS {
+        let (mut fewest, mut nearest, mut stale) = (usize::MAX, usize::MAX, 0);
+        for round in 0.. {
             if self.probe.is_spent() {
-                return Err(TessellateError::TooMuchWork);
+                return Err(TessellateError::TooMuchWork.into());
             }
             let far = self.too_far(&refiner, &mut checked);
             let crossed = if far.is_empty() { self.crossed(&refiner) } else { Vec::new() };
-            if far.is_empty() && crossed.is_empty() {
+            let crossing = far.is_empty();
+            let (found, best) = if crossing { (&crossed, &mut fewest) } else { (&far, &mut nearest) };
+            if found.is_empty() {
                 return Ok((refiner, checked.greatest * MARGIN));
             }
-            // What gets worse and worse comes right no longer.
-            if far.len() > nearest.max(MOST_TANGLED).saturating_mul(2) {
-                break;
+            if found.len() < *best {
+                (*best, stale) = (found.len(), 0);
+            } else {
+                stale += 1;
             }
-            if !far.is_empty() {
-                nearest = nearest.min(far.len());
-            }
-            if crossed.len() > fewest.max(MOST_TANGLED).saturating_mul(2) {
-                break;
-            }
-            if far.is_empty() {
-                fewest = fewest.min(crossed.len());
+            // What gets no better comes right no longer.
+            if round == REPAIRS || stale == PATIENCE {
+                let skin = &refiner.skin;
+                let wrong = |triangle: &u32| Wrong {
+                    place: skin.middle(*triangle),
+                    coarse: !crossing && skin.is_kept(*triangle),
+                };
+                let flaw = if crossing { Flaw::Crossing } else { Flaw::Far };
+                return Err(Fault::Unsound { wrong: found.iter().map(wrong).collect(), flaw });
             }
             self.repair(&mut refiner, &far, &crossed, round);
         }
-        let crossed = self.crossed(&refiner);
-        let far = self.too_far(&refiner, &mut checked);
-        // What is too far off is split until it crosses.
-        match far.first().or(crossed.first()) {
-            None => Ok((refiner, checked.greatest * MARGIN)),
-            Some(triangle) => {
-                let corners = refiner.skin.triangles[*triangle as usize];
-                let place = refiner.skin.point(corners[0]);
-                Err(TessellateError::Unsound { place, crossing: far.is_empty() })
-            }
-        }
+        unreachable!("rounds end")
     }
 
     /// Moves rough points onto the surface.
     fn settle(&self, skin: &mut Skin, brackets: &[[DVec3; 2]]) {
-        let settled: Vec<(DVec3, DVec3)> = brackets
+        let settled: Vec<(DVec3, DVec3, Kind)> = brackets
             .par_iter()
             .zip(skin.points.par_iter())
             .map(|([inside, outside], point)| {
                 let reach = 0.5 * inside.distance(*outside);
                 // Beside an edge steps along the gradient may lead across it: there points stay where they are in their
                 // tetrahedra.
-                let settled = if self.kinks { None } else { self.probe.settle(*point, reach) };
-                settled.unwrap_or_else(|| self.probe.between(*inside, *outside))
+                let held = self.zones.hold(*point);
+                let settled = if self.kinks || held { None } else { self.probe.settle(*point, reach) };
+                let (place, normal) = settled.unwrap_or_else(|| self.probe.between(*inside, *outside));
+                (place, normal, if held { Kind::Held } else { Kind::Smooth })
             })
             .collect();
-        for (index, (place, normal)) in settled.into_iter().enumerate() {
-            (skin.points[index], skin.normals[index]) = (place, normal);
+        for (index, (place, normal, kind)) in settled.into_iter().enumerate() {
+            (skin.points[index], skin.normals[index], skin.kinds[index]) = (place, normal, kind);
         }
     }
 

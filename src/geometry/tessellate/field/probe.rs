@@ -130,7 +130,39 @@ impl Probe<'_> {
             }
             place = next;
         }
-        Some(place)
+        let [one, other] = sides.map(|side| self.normal_towards(place, side, 0.002));
+        Some(self.onto(place, one + other))
+    }
+
+    /// A place that was found by planes, moved along a direction onto the surface, which they only nearly tell where it
+    /// bends; the place itself where the surface is not beside it.
+    pub(super) fn onto(&self, place: DVec3, outward: DVec3) -> DVec3 {
+        const CLOSE: f64 = 1e-8;
+        const DOUBLINGS: u32 = 12;
+        self.work.add(1);
+        let (value, gradient) = self.field.value_gradient(place);
+        let first = value.abs() / gradient.length();
+        if !first.is_finite() || first <= CLOSE * self.size {
+            return place;
+        }
+        for outward in [outward, gradient] {
+            let Some(outward) = outward.try_normalize() else { continue };
+            let side = if value < 0.0 { outward } else { -outward };
+            let mut step = first;
+            for _ in 0..DOUBLINGS {
+                self.work.add(1);
+                let beyond = place + side * step;
+                if (self.field.value(beyond) < 0.0) != (value < 0.0) {
+                    let (inside, outside) = if value < 0.0 { (place, beyond) } else { (beyond, place) };
+                    return self.between(inside, outside).0;
+                }
+                step *= 2.0;
+                if step > 1e-3 * self.size {
+                    break;
+                }
+            }
+        }
+        place
     }
 
     /// The place where three sides of the surface meet.
@@ -149,7 +181,8 @@ impl Probe<'_> {
                 return None;
             }
         }
-        Some(place)
+        let outward = sides.iter().map(|side| self.normal_towards(place, *side, 0.002)).sum();
+        Some(self.onto(place, outward))
     }
 
     /// The plane on which the field would be zero were it flat: n . x = offset.

@@ -180,6 +180,9 @@ impl Refiner<'_> {
     /// Splits an edge where that folds no triangle over: beside an edge of the surface the nearest place to the middle may
     /// lie behind it.
     pub(super) fn split_edge(&mut self, half: u32) -> Option<u32> {
+        if self.skin.is_held(half) {
+            return None;
+        }
         let (from, to) = (self.skin.from(half), self.skin.to(half));
         let (a, b) = (self.skin.point(from), self.skin.point(to));
         let (place, normal, kind) = if self.skin.is_sharp(half) {
@@ -211,7 +214,7 @@ impl Refiner<'_> {
                 let middle = (place + skin.point(ends[0]) + skin.point(ends[1])) / 3.0;
                 let own = match kind {
                     Kind::Smooth => normal,
-                    Kind::Edge | Kind::Corner => self.probe.normal_towards(place, middle, ASIDE),
+                    Kind::Edge | Kind::Corner | Kind::Held => self.probe.normal_towards(place, middle, ASIDE),
                 };
                 let corner = |point: u32| (skin.point(point), self.probe.corner_normal(skin, point, middle));
                 upright([(place, own), corner(ends[0]), corner(ends[1])]) >= UPRIGHT.min(before)
@@ -267,7 +270,7 @@ impl Refiner<'_> {
         let skin = &self.skin;
         let (a, b) = (skin.from(half), skin.to(half));
         match skin.kind(a) {
-            Kind::Corner => return f64::INFINITY,
+            Kind::Corner | Kind::Held => return f64::INFINITY,
             Kind::Edge if !skin.is_sharp(half) => return f64::INFINITY,
             _ => {}
         }
@@ -348,7 +351,7 @@ impl Refiner<'_> {
 
     fn is_better_turned(&self, half: u32) -> bool {
         let skin = &self.skin;
-        if skin.is_sharp(half) {
+        if skin.is_sharp(half) || skin.is_held(half) {
             return false;
         }
         let (a, b) = (skin.from(half), skin.to(half));

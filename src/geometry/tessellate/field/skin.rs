@@ -21,6 +21,8 @@ pub(super) enum Kind {
     Edge,
     /// It is a corner.
     Corner,
+    /// It stays where it is, and so do triangles between such points.
+    Held,
 }
 
 /// A closed surface of triangles.
@@ -102,6 +104,12 @@ impl Skin {
         self.points[index as usize]
     }
 
+    /// The middle of a triangle.
+    pub(super) fn middle(&self, triangle: u32) -> DVec3 {
+        let [a, b, c] = self.triangles[triangle as usize].map(|corner| self.point(corner));
+        (a + b + c) / 3.0
+    }
+
     pub(super) fn normal(&self, index: u32) -> DVec3 {
         self.normals[index as usize]
     }
@@ -116,6 +124,16 @@ impl Skin {
 
     pub(super) fn is_alive(&self, triangle: u32) -> bool {
         self.triangles[triangle as usize][0] != NONE
+    }
+
+    /// Whether a triangle stays as it is.
+    pub(super) fn is_kept(&self, triangle: u32) -> bool {
+        self.triangles[triangle as usize].into_iter().all(|corner| self.kind(corner) == Kind::Held)
+    }
+
+    /// Whether a triangle beside an edge stays as it is.
+    pub(super) fn is_held(&self, half: u32) -> bool {
+        self.is_kept(half / 3) || self.is_kept(self.twin(half) / 3)
     }
 
     /// Live half-edges, one of each pair.

@@ -5,7 +5,10 @@ use core::f64::consts::PI;
 use glam::DVec3;
 
 use super::{FieldSurface, field_surface};
-use crate::geometry::field::{AnyField, Blend, Element, Form, Join, Joined, Potential, Primitive, Skeleton};
+use crate::geometry::curve::{AnyCurve, interpolate};
+use crate::geometry::field::{
+    AnyField, Blend, Element, Form, Join, Joined, Line, Potential, Primitive, Skeleton,
+};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::mesh::crossing::crossings;
 use crate::geometry::number::Bounds;
@@ -67,12 +70,17 @@ fn check(shape: &FieldSurface, tolerance: f64) -> Tessellation {
     made
 }
 
-fn balls(count: u32, seed: u32) -> AnyField {
+/// Numbers from 0 to 1.
+fn numbers(seed: u32) -> impl FnMut() -> f64 {
     let mut state = u64::from(seed).wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
-    let mut next = move || {
+    move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         f64::from(u32::try_from(state >> 33).expect("31 bits")) / f64::from(1_u32 << 31)
-    };
+    }
+}
+
+fn balls(count: u32, seed: u32) -> AnyField {
+    let mut next = numbers(seed);
     let elements = (0..count).map(|_| {
         let center = DVec3::new(next(), next(), next()) * 1.2 - 0.6;
         let radius = 0.25 + 0.2 * next();
@@ -83,6 +91,34 @@ fn balls(count: u32, seed: u32) -> AnyField {
         }
     });
     AnyField::Skeleton(Box::new(Skeleton::new(elements.collect(), 0.6)))
+}
+
+/// Elements of all kinds with all potentials; some take away.
+fn mixed(seed: u32) -> AnyField {
+    let mut next = numbers(seed);
+    let mut element = |k: u32| {
+        let mut point = || DVec3::new(next(), next(), next()) * 1.2 - 0.6;
+        let points = [point(), point(), point(), point()];
+        let form = match (seed + k) % 4 {
+            0 => Form::Point(points[0]),
+            1 => Form::Segment(points[0], points[1]),
+            2 => Form::Triangles(vec![[points[0], points[1], points[2]]]),
+            _ => {
+                let curve = interpolate(&points, &[0.0, 1.0, 2.0, 3.0]).expect("distinct");
+                Form::Curves(vec![Line::new(&AnyCurve::Bezier(curve))])
+            }
+        };
+        let radius = 0.25 + 0.3 * next();
+        let potential = match (seed / 3 + k) % 5 {
+            0 => Potential::Gaussian { sharpness: 1.0 / (radius * radius) },
+            1 => Potential::Wyvill { radius },
+            exponent => Potential::Power { radius, exponent: exponent - 1 },
+        };
+        let strength = if k > 0 && next() < 0.2 { -0.5 } else { 1.5 };
+        Element { form, potential, strength }
+    };
+    let elements = (0..1 + seed % 3).map(&mut element).collect();
+    AnyField::Skeleton(Box::new(Skeleton::new(elements, 0.5)))
 }
 
 #[test]
@@ -126,5 +162,15 @@ fn sharp_edges_are_kept() {
 fn random_skeletons_are_sound() {
     for seed in 0..40 {
         check(&surface(balls(7, seed), 1.1), 1e-2);
+    }
+}
+
+/// Surfaces with edges that begin and end somewhere: of curves that turn back, and of potentials that end with a slope.
+#[test]
+fn random_skeletons_with_edges_are_sound() {
+    for seed in 6..18 {
+        let field = mixed(seed);
+        let within = field.bounds().expect("potentials fall off");
+        check(&FieldSurface { field, within, least: None }, 2e-2);
     }
 }

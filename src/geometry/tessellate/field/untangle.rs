@@ -33,7 +33,9 @@ impl Refiner<'_> {
         for _ in 0..6 {
             let mut any = false;
             for point in 0..mesh::index(self.skin.points.len()) {
-                if self.skin.starts[point as usize] != NONE && self.skin.kind(point) != Kind::Smooth {
+                if self.skin.starts[point as usize] != NONE
+                    && matches!(self.skin.kind(point), Kind::Edge | Kind::Corner)
+                {
                     any |= self.unfold_at(point, most);
                 }
             }
@@ -89,7 +91,7 @@ impl Refiner<'_> {
     }
 
     fn draw_anyway(&mut self, half: u32) -> bool {
-        if !self.skin.can_collapse(half) {
+        if self.skin.kind(self.skin.from(half)) == Kind::Held || !self.skin.can_collapse(half) {
             return false;
         }
         let left = self.skin.to(half);
@@ -111,7 +113,7 @@ impl Refiner<'_> {
     fn draw(&mut self, half: u32) -> bool {
         let skin = &self.skin;
         let free = match skin.kind(skin.from(half)) {
-            Kind::Corner => false,
+            Kind::Corner | Kind::Held => false,
             Kind::Edge => skin.is_sharp(half),
             Kind::Smooth => true,
         };
