@@ -242,27 +242,43 @@ async function levels(browser) {
   await page.close();
 }
 
-// Milliseconds from a save to its bytes in the page, and to its picture.
-async function latency(browser) {
-  const spec = fs.readFileSync(path.join(specs, 'turned/vase.toml'), 'utf8');
-  write('vase.toml', spec);
-  const page = await open(browser, await watch('vase.toml'));
+// Milliseconds from a save to its bytes in the page, and to its picture, for texts that differ.
+async function took(browser, name, text) {
+  write(name, text(0));
+  const page = await open(browser, await watch(name));
   await settled(page, true);
-  found.latency = [];
+  const all = [];
   for (let step = 1; step <= 5; step += 1) {
     await pause(100);
     await page.evaluate(() => performance.clearMarks());
     const start = performance.timeOrigin + performance.now();
-    write('vase.toml', spec.replace('height = 0.26', `height = 0.26${step}`));
+    write(name, text(step));
     await page.waitForFunction(() => performance.getEntriesByName('kiln-drawn').length > 0, null, { polling: 'raf' });
     await settled(page, true);
     const marks = await page.evaluate(() => ['kiln-bytes', 'kiln-drawn'].map((name) => {
       const mark = performance.getEntriesByName(name)[0];
       return mark ? performance.timeOrigin + mark.startTime : null;
     }));
-    found.latency.push(marks.map((mark) => mark && mark - start));
+    all.push(marks.map((mark) => mark && mark - start));
   }
   await page.close();
+  return all;
+}
+
+const TEA = ['teapot', 'teacup', 'teaspoon'];
+
+async function latency(browser) {
+  const vase = fs.readFileSync(path.join(specs, 'turned/vase.toml'), 'utf8');
+  // Their sections one after the other; within another tolerance all of it is cut anew.
+  const sections = TEA.map((name) => {
+    const text = fs.readFileSync(path.join(specs, `patches/${name}.toml`), 'utf8');
+    return text.slice(text.indexOf('\n[') + 1);
+  }).join('\n');
+  const tea = (step) => `tolerance = ${(0.0002 - step * 0.00001).toFixed(5)}\n${sections}`;
+  found.latency = {
+    vase: await took(browser, 'vase.toml', (step) => vase.replace('height = 0.26', `height = 0.26${step}`)),
+    'tea set': await took(browser, 'tea-set.toml', tea),
+  };
 }
 
 const browser = await launch();
