@@ -302,7 +302,7 @@ fn turntable(
 /// Pictures one after the other, as the ending of the file says: a .png shows them too, where it is read as an .apng.
 fn moving(pictures: &[Picture], milliseconds: u16, ending: &str) -> Result<Vec<u8>, Fault> {
     if ending == "gif" {
-        return Ok(Picture::gif(pictures, milliseconds));
+        return Picture::gif(pictures, milliseconds).map_err(unwritten);
     }
     Picture::animation(pictures, milliseconds).map_err(unwritten)
 }

@@ -3,11 +3,11 @@
 //! Promise: one palette of up to 255 colors for all pictures, so that nothing flickers; what is less than half opaque is not
 //! drawn. No promise: smooth shades; APNG keeps all colors.
 //!
-//! Source: Graphics Interchange Format 89a, 1990 (with appendix F, compression); P. Heckbert, Color Image Quantization for
-//! Frame Buffer Display, 1982, section 4.2 (median cut).
+//! Source: P. Heckbert, Color Image Quantization for Frame Buffer Display, 1982, section 4.2 (median cut).
 //!
 //! Cost: linear in pixels, and a table of 32768 colors.
 
+use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 use super::Picture;
@@ -20,37 +20,35 @@ const COLORS: usize = 1 << (3 * BITS);
 const PALETTE: usize = 255;
 const NOTHING: u8 = 255;
 
-/// Codes that a table of words can hold.
-const CODES: usize = 4096;
-const CLEAR: u16 = 256;
-const END: u16 = 257;
-
 /// The file of pictures of one size, each shown so long, forever.
-pub(super) fn gif(pictures: &[Picture], milliseconds: u16) -> Vec<u8> {
+pub(super) fn gif(pictures: &[Picture], milliseconds: u16) -> Result<Vec<u8>, EncodingError> {
     let (width, height) = pictures.first().map_or((0, 0), |picture| (picture.width, picture.height));
-    let short = |number: usize| u16::try_from(number).unwrap_or(u16::MAX).to_le_bytes();
+    let short = |number: usize| u16::try_from(number).unwrap_or(u16::MAX);
     let (palette, nearest) = palette(pictures);
-    let mut file = b"GIF89a".to_vec();
-    file.extend([short(width), short(height)].as_flattened());
-    // A palette of 256 colors, each part of 8 bits.
-    file.extend([0xf7, 0, 0]);
-    file.extend(palette.as_flattened());
-    file.extend(b"\x21\xff\x0bNETSCAPE2.0\x03\x01\0\0\0");
-    let pause = (milliseconds / 10).to_le_bytes();
-    let frames: Vec<Vec<u8>> = pictures.par_iter().map(|picture| packed(picture, &nearest)).collect();
-    for frame in frames {
-        // The picture goes before the next comes, for that may show less.
-        file.extend([0x21, 0xf9, 4, 0x09, pause[0], pause[1], NOTHING, 0, 0x2c, 0, 0, 0, 0]);
-        file.extend([short(width), short(height)].as_flattened());
-        file.extend([0, 8]);
-        for block in frame.chunks(255) {
-            file.extend(u8::try_from(block.len()));
-            file.extend(block);
-        }
-        file.push(0);
+    let frame = |picture: &Picture| {
+        let color = |pixel: &[u8; 4]| told(*pixel).map_or(NOTHING, |color| nearest[color]);
+        let mut frame = Frame {
+            delay: milliseconds / 10,
+            // The picture goes before the next comes, for that may show less.
+            dispose: DisposalMethod::Background,
+            transparent: Some(NOTHING),
+            width: short(picture.width),
+            height: short(picture.height),
+            buffer: picture.pixels.iter().map(color).collect(),
+            ..Frame::default()
+        };
+        frame.make_lzw_pre_encoded();
+        frame
+    };
+    let frames: Vec<Frame<'_>> = pictures.par_iter().map(frame).collect();
+    let mut file = Vec::new();
+    let mut encoder = Encoder::new(&mut file, short(width), short(height), palette.as_flattened())?;
+    encoder.set_repeat(Repeat::Infinite)?;
+    for frame in &frames {
+        encoder.write_lzw_pre_encoded_frame(frame)?;
     }
-    file.push(0x3b);
-    file
+    drop(encoder);
+    Ok(file)
 }
 
 /// Which of the told colors a pixel has; none where it is nothing.
@@ -144,72 +142,4 @@ fn halved(colors: &mut Vec<usize>, seen: &[Seen]) -> Vec<usize> {
     let border = if value == highest { value - 1 } else { value }.max(lowest);
     let cut = colors.partition_point(|color| part(*color, axis) <= border);
     colors.split_off(cut)
-}
-
-/// The pixels of a picture by the words of Lempel, Ziv and Welch.
-fn packed(picture: &Picture, nearest: &[u8]) -> Vec<u8> {
-    let mut out = Bits::default();
-    // For each word and next pixel the word that both make; none is 0.
-    let mut longer = vec![0_u16; CODES << 8];
-    let (mut next, mut size) = (END + 1, 9);
-    out.put(CLEAR, size);
-    let mut word: Option<u16> = None;
-    for pixel in &picture.pixels {
-        let color = told(*pixel).map_or(NOTHING, |color| nearest[color]);
-        let Some(known) = word else {
-            word = Some(u16::from(color));
-            continue;
-        };
-        let place = usize::from(known) << 8 | usize::from(color);
-        if longer[place] != 0 {
-            word = Some(longer[place]);
-            continue;
-        }
-        out.put(known, size);
-        if usize::from(next) < CODES {
-            longer[place] = next;
-            // One more bit from the first word on that needs it.
-            size += u32::from(next == 1 << size);
-            next += 1;
-        } else {
-            out.put(CLEAR, size);
-            longer.fill(0);
-            (next, size) = (END + 1, 9);
-        }
-        word = Some(u16::from(color));
-    }
-    if let Some(word) = word {
-        out.put(word, size);
-        // The reader has made a word of it, too.
-        size += u32::from(next == 1 << size && size < 12);
-    }
-    out.put(END, size);
-    out.finish()
-}
-
-/// Bits, the lowest first.
-#[derive(Default)]
-struct Bits {
-    bytes: Vec<u8>,
-    open: u32,
-    count: u32,
-}
-
-impl Bits {
-    fn put(&mut self, code: u16, size: u32) {
-        self.open |= u32::from(code) << self.count;
-        self.count += size;
-        while self.count >= 8 {
-            self.bytes.push(self.open.to_le_bytes()[0]);
-            self.open >>= 8;
-            self.count -= 8;
-        }
-    }
-
-    fn finish(mut self) -> Vec<u8> {
-        if self.count > 0 {
-            self.bytes.push(self.open.to_le_bytes()[0]);
-        }
-        self.bytes
-    }
 }

@@ -17,8 +17,14 @@ pub struct Picture {
 
 /// Why a picture cannot be written.
 #[derive(Debug, Error)]
-#[error("the picture cannot be encoded: {0}")]
-pub struct PictureError(#[from] png::EncodingError);
+pub enum PictureError {
+    /// As a PNG file.
+    #[error("the picture cannot be encoded: {0}")]
+    Png(#[from] png::EncodingError),
+    /// As a GIF file.
+    #[error("the picture cannot be encoded: {0}")]
+    Gif(#[from] gif::EncodingError),
+}
 
 /// Pixels between the pictures of a sheet.
 const GAP: usize = 8;
@@ -76,9 +82,11 @@ impl Picture {
     }
 
     /// The same as GIF: of 255 colors, for places that show no better.
-    #[must_use]
-    pub fn gif(pictures: &[Self], milliseconds: u16) -> Vec<u8> {
-        super::gif::gif(pictures, milliseconds)
+    ///
+    /// # Errors
+    /// When the sides of a picture are no whole numbers of 16 bits.
+    pub fn gif(pictures: &[Self], milliseconds: u16) -> Result<Vec<u8>, PictureError> {
+        Ok(super::gif::gif(pictures, milliseconds)?)
     }
 }
 
