@@ -34,8 +34,9 @@ error[K0101]: unknown field `rougness` of material
   | ^^^^^^^^ not a field of material
   |
   = note: fields of material: color, metallic, roughness, color-texture, metallic-roughness-texture, \
-roughness-texture, metallic-texture, normal-texture, normal-scale, occlusion-texture, occlusion-strength, emissive, emissive-texture, alpha, \
-alpha-cutoff, double-sided
+roughness-texture, metallic-texture, normal-texture, normal-scale, occlusion-texture, occlusion-strength, emissive, emissive-texture, \
+emissive-strength, alpha, alpha-cutoff, double-sided, unlit, ior, dispersion, clearcoat, transmission, volume, specular, sheen, \
+iridescence, anisotropy
 help: did you mean `roughness`?
   |
 3 | roughness = 0.5
