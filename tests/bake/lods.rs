@@ -14,7 +14,7 @@ use super::glb::{Glb, Mesh};
 use super::inputs;
 
 /// The files of a text for some profiles; `ring.obj` is beside it.
-fn files(text: &str, profiles: &[Profile]) -> Vec<Compiled> {
+pub(super) fn files(text: &str, profiles: &[Profile]) -> Vec<Compiled> {
     let files = inputs().with("ring.obj", ring()).with("spec.toml", text);
     let document = Document::load("spec.toml", &files).unwrap_or_else(|found| panic!("{found}\n{text}"));
     let options = Options {

@@ -1,12 +1,11 @@
 //! Parts of one material: one primitive, or one for each.
 
 use kiln::Profile;
-use kiln::compile::{Compiled, Options, compile_profiles};
-use kiln::language::Document;
+use kiln::compile::Compiled;
 use serde_json::Value;
 
 use super::glb::Glb;
-use super::inputs;
+use super::lods::files;
 
 /// A cart of parts of two materials; a wheel four times, and a body that is a solid of two.
 const CART: &str = "tolerance = 0.004
@@ -46,16 +45,7 @@ shape = \"cart\"
 ";
 
 fn baked(more: &str, profiles: &[Profile]) -> Vec<Compiled> {
-    let text = format!("{CART}{more}");
-    let files = inputs().with("spec.toml", text.as_str());
-    let document = Document::load("spec.toml", &files).unwrap_or_else(|found| panic!("{found}\n{text}"));
-    let options = Options {
-        name: "asset".to_owned(),
-        profiles: profiles.to_vec(),
-        measure: true,
-        ..Options::default()
-    };
-    compile_profiles(&document, &files, &options).unwrap_or_else(|found| panic!("{found}\n{text}"))
+    files(&format!("{CART}{more}"), profiles)
 }
 
 fn primitives(glb: &Glb, mesh: usize) -> &[Value] {
