@@ -6,13 +6,13 @@ use glam::{DAffine3, DMat3, DVec3};
 use indexmap::IndexMap;
 
 use super::Builder;
-use crate::geometry::mesh;
 use crate::import::keyframes::Keyframes;
-use crate::import::{self, ImportError, ImportOptions, Imported, MaterialLook, Note};
+use crate::import::look::Pictures;
+use crate::import::{self, ImportError, ImportOptions, Imported, Note};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::{FileError, Files, Span, join};
 use crate::language::spec::{FilePath, Import, MaterialName, Sp, Up};
-use crate::model::{AlphaMode, Material, MaterialHandle, Optics, Recipe};
+use crate::model::{MaterialHandle, Recipe};
 
 /// The rotation from a file's axes to a document's.
 pub(super) fn axes_between(file: Up, document: Up) -> DMat3 {
@@ -27,10 +27,18 @@ pub(super) fn axes_between(file: Up, document: Up) -> DMat3 {
 const NOTES: usize = 4;
 
 impl Builder<'_> {
-    pub(super) fn import(&mut self, import: &Import, span: Span) -> Option<Recipe> {
-        let imported = self.read_mesh(import)?;
-        self.tell_notes(&import.file, &imported.notes);
-        let materials = self.imported_materials(import, &imported);
+    /// The mesh of a file; whether its shape has a material of its own, which is that of all faces whose material the file
+    /// gives no color.
+    pub(super) fn import(&mut self, import: &Import, has_material: bool, span: Span) -> Option<Recipe> {
+        let mut imported = self.read_mesh(import)?;
+        if has_material {
+            for look in imported.materials.iter_mut().filter(|look| look.color.is_none()) {
+                look.pictures = Pictures::default();
+            }
+        }
+        let mut notes = std::mem::take(&mut imported.notes);
+        let materials = self.imported_materials(import, &imported, &mut notes);
+        self.tell_notes(&import.file, &notes);
         let mut mesh = imported.mesh;
         let up = import.up.map_or_else(|| default_up(&import.file), |up| up.value);
         let axes = axes_between(up, self.spec.up);
@@ -181,6 +189,7 @@ impl Builder<'_> {
         &mut self,
         import: &Import,
         imported: &Imported,
+        notes: &mut Vec<Note>,
     ) -> Option<Vec<Option<MaterialHandle>>> {
         let names = &imported.mesh.materials;
         for (name, target) in &import.materials {
@@ -198,43 +207,22 @@ impl Builder<'_> {
                 return None;
             }
         }
-        Some(self.looks_of(&import.materials, imported))
+        Some(self.looks_of((&import.file.value, &import.materials), imported, notes))
     }
 
     /// For each material of a file one of the model: as the document says, else as the file says. One that could not be
-    /// built was told.
+    /// built was told. Those of its pictures that are not found are noted.
     pub(super) fn looks_of(
         &mut self,
-        written: &IndexMap<String, Sp<MaterialName>>,
+        (file, written): (&FilePath, &IndexMap<String, Sp<MaterialName>>),
         imported: &Imported,
+        notes: &mut Vec<Note>,
     ) -> Vec<Option<MaterialHandle>> {
         let look = |(index, name): (usize, &String)| match written.get(name) {
             Some(target) => self.material(&target.value.0),
-            None => imported.materials.get(index).and_then(|look| self.look(look)),
+            None => imported.materials.get(index).and_then(|look| self.look(file, look, notes)),
         };
         imported.mesh.materials.iter().enumerate().map(look).collect()
-    }
-
-    /// A material as a material library describes it; `None` where it says nothing of its look.
-    fn look(&mut self, look: &MaterialLook) -> Option<MaterialHandle> {
-        let [red, green, blue] = look.color?;
-        let opacity = look.opacity.unwrap_or(1.0);
-        self.model.materials.push(Material {
-            name: look.name.clone(),
-            color: [red, green, blue, opacity],
-            metallic: look.metallic.unwrap_or(0.0),
-            roughness: look.roughness.unwrap_or(1.0),
-            color_texture: None,
-            metallic_roughness_texture: None,
-            normal_texture: None,
-            occlusion_texture: None,
-            emissive: look.emissive.unwrap_or([0.0; 3]),
-            emissive_texture: None,
-            alpha: if opacity < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque },
-            double_sided: look.double_sided,
-            optics: Optics::default(),
-        });
-        Some(MaterialHandle(mesh::index(self.model.materials.len()) - 1))
     }
 }
 

@@ -46,6 +46,7 @@ mod part;
 mod patch;
 mod path;
 mod perturbed;
+mod picture;
 mod polygon;
 mod primitive;
 mod profile;

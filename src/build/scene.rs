@@ -143,20 +143,9 @@ impl Builder<'_> {
                 continue;
             }
             let looks = scene.looks(&mesh.materials);
-            for look in looks.iter().filter(|look| !place.import.materials.contains_key(&look.name)) {
-                if let Some(texture) = &look.texture {
-                    let message = format!(
-                        "material `{}` shows `{texture}`; name one of the document for it",
-                        look.name
-                    );
-                    let note = Note { line: None, message };
-                    if !notes.contains(&note) {
-                        notes.push(note);
-                    }
-                }
-            }
             let imported = Imported { mesh, materials: looks, ..Imported::default() };
-            let materials = self.looks_of(&place.import.materials, &imported);
+            let materials =
+                self.looks_of((&place.import.file.value, &place.import.materials), &imported, notes);
             let recipe = Recipe::Polygons { mesh: imported.mesh, materials };
             let handle = ShapeHandle(mesh::index(self.model.shapes.len()));
             let own = kebab(&object.name).unwrap_or_else(|| format!("object-{}", shapes.len() + 1));

@@ -169,7 +169,9 @@ impl Builder<'_> {
             Kind::Perturbed(patches) => self.perturbed_patches(patches, span).map(here),
             Kind::Implicit(surface) => self.implicit_shape(surface, span).map(here),
             Kind::Mesh(mesh) => self.mesh(mesh, span).map(here),
-            Kind::Import(import) => self.import(import, span).map(here),
+            Kind::Import(import) => {
+                self.import(import, definition.options.material.is_some(), span).map(here)
+            }
             Kind::Taper(taper) => self.taper(name, taper).map(here),
             Kind::Twist(twist) => self.twist(name, twist).map(here),
             Kind::Bend(bend) => self.bend(name, bend).map(here),

@@ -10,6 +10,7 @@
 use glam::{DVec2, DVec3};
 use thiserror::Error;
 
+use super::MaterialLook;
 use super::keyframes::{Frame, Keyframes, text};
 use crate::geometry::mesh::PolygonMesh;
 
@@ -83,6 +84,8 @@ pub enum Md2Fault {
     },
 }
 
+/// Name of the material of a file that names skins.
+const SKIN: &str = "skin";
 /// Bytes of the header: 17 numbers.
 const HEADER: usize = 68;
 /// Bytes of a frame before its points: scale, offset and name.
@@ -103,9 +106,17 @@ pub fn read(bytes: &[u8]) -> Result<Keyframes, Md2Fault> {
     let header = Header::read(header);
     header.check(bytes.len())?;
     let frames = header.frames(bytes)?;
-    let mesh = header.mesh(bytes, &frames[0].points)?;
+    let mut mesh = header.mesh(bytes, &frames[0].points)?;
     let names = header.rows(bytes, header.skin_offset, header.skins, 64);
-    Ok(Keyframes { mesh, frames, pictures: names.map(text).collect(), ..Keyframes::default() })
+    let pictures: Vec<String> = names.map(text).collect();
+    let mut materials = Vec::new();
+    if let Some(first) = pictures.first().filter(|first| !first.is_empty()) {
+        // Games give a model the first of its skins.
+        materials.push(MaterialLook::pictured(SKIN, first));
+        mesh.materials.push(SKIN.to_owned());
+        mesh.faces.iter_mut().for_each(|face| face.material = Some(0));
+    }
+    Ok(Keyframes { mesh, frames, pictures, materials, ..Keyframes::default() })
 }
 
 /// What the header says.

@@ -380,8 +380,8 @@ impl<'b> Surface<'b> {
         }
         names.push(self.name.clone());
         let shader = self.file.text(self.row(1, 0, SHADER), 64);
-        let texture = Some(shader).filter(|shader| self.shaders > 0 && !shader.is_empty());
-        found.materials.push(MaterialLook { name: self.name.clone(), texture, ..MaterialLook::default() });
+        let shader = if self.shaders > 0 { shader.as_str() } else { "" };
+        found.materials.push(MaterialLook::pictured(&self.name, shader));
         index(names.len() - 1)
     }
 

@@ -13,6 +13,7 @@ pub mod gltf;
 pub mod heights;
 pub mod image;
 pub mod keyframes;
+pub mod look;
 pub mod md2;
 pub mod md3;
 pub mod md5;
@@ -25,6 +26,7 @@ use crate::geometry::mesh::PolygonMesh;
 
 pub use error::ImportError;
 pub use foreign::{Foreign, recognize};
+pub use look::MaterialLook;
 
 /// What to read from a file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,27 +60,6 @@ pub struct Note {
     pub line: Option<u32>,
     /// What happened, in lower case without a full stop.
     pub message: String,
-}
-
-/// What a file or a material library says of a material.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct MaterialLook {
-    /// Its name.
-    pub name: String,
-    /// `Kd`: diffuse color, linear, 0 to 1.
-    pub color: Option<[f64; 3]>,
-    /// `d`, or 1 - `Tr`: 1 is opaque.
-    pub opacity: Option<f64>,
-    /// How metallic it is, 0 to 1.
-    pub metallic: Option<f64>,
-    /// How rough it is, 0 to 1.
-    pub roughness: Option<f64>,
-    /// Linear light that it sends out.
-    pub emissive: Option<[f64; 3]>,
-    /// Whether its back is seen.
-    pub double_sided: bool,
-    /// `map_Kd`: path of the color texture as written.
-    pub texture: Option<String>,
 }
 
 /// Whether files of this ending, in lower case, have z up by custom; those of the others have y.

@@ -123,7 +123,10 @@ fn looks_of(
             continue;
         };
         match open(&inside) {
-            Some(bytes) => known.extend(mtl::read(&bytes)),
+            Some(bytes) => {
+                let folder = inside.rfind('/').map_or("", |end| &inside[..=end]);
+                known.extend(mtl::read(&bytes, folder));
+            }
             None => {
                 let message = format!("material library `{path}` not found");
                 notes.push(Note { line: Some(*line), message });

@@ -16,10 +16,10 @@ use thiserror::Error;
 
 use self::body::Body;
 use self::header::{Element, Kind};
-use super::{ImportError, ImportOptions, Imported, Note};
+use super::{ImportError, ImportOptions, Imported, MaterialLook, Note};
 use crate::geometry::mesh::polygon::NONE;
 use crate::geometry::mesh::{Color, PolygonMesh, index};
-use crate::geometry::number::srgb_to_linear;
+use crate::geometry::number::{count_of, floor_count, srgb_to_linear};
 
 /// Why a file is no mesh.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -104,7 +104,7 @@ pub fn read(bytes: &[u8], options: &ImportOptions) -> Result<Imported, ImportErr
         return Err(ImportError::UnknownGroup { group: group.clone(), known: Vec::new() });
     }
     let mut body = Body::new(&bytes[start..], header.format);
-    let mut found = Found::default();
+    let mut found = Found { pictures: header.pictures.clone(), ..Found::default() };
     for element in &header.elements {
         body.check(element)?;
         match element.name.as_str() {
@@ -165,6 +165,8 @@ struct Found {
     beyond: u64,
     /// Faces that have fewer than three corners.
     small: u64,
+    /// Pictures, by which faces have their numbers.
+    pictures: Vec<String>,
 }
 
 impl Found {
@@ -200,6 +202,7 @@ impl Found {
     fn faces(&mut self, element: &Element, body: &mut Body<'_>) -> Result<(), PlyFault> {
         let (corners, places) = (element.find(&CORNERS), element.find(&["texcoord"]));
         let shade = Shade::of(element);
+        let texture = element.find(&["texnumber"]);
         let mut numbers = vec![0.0; element.properties.len()];
         for row in 0..element.count {
             let (mut own, mut own_places) = (Vec::new(), Vec::new());
@@ -219,7 +222,8 @@ impl Found {
                 self.small += 1;
                 continue;
             }
-            self.face(&own);
+            let number = texture.map_or(0.0, |column| numbers[column]);
+            self.face(&own, number);
             if let Some(shade) = &shade {
                 let color = shade.color(&numbers, &mut self.beyond);
                 self.corner_colors.extend(own.iter().map(|_| index(self.face_colors.len())));
@@ -255,7 +259,7 @@ impl Found {
                     let [a, b, c] = [triangle[0], triangle[1], triangle[2]];
                     // Corners that repeat only lead on to the next strip.
                     if a != b && b != c && c != a {
-                        self.face(&if at % 2 == 0 { [a, b, c] } else { [b, a, c] });
+                        self.face(&if at % 2 == 0 { [a, b, c] } else { [b, a, c] }, 0.0);
                     }
                 }
             }
@@ -266,19 +270,21 @@ impl Found {
     fn corner(&self, element: &Element, row: u64, index: f64) -> Result<u32, PlyFault> {
         let count = self.mesh.points.len();
         if index >= 0.0 && index < count as f64 && index.fract() == 0.0 {
-            return Ok(crate::geometry::number::floor_count(index));
+            return Ok(floor_count(index));
         }
         Err(PlyFault::Index { element: element.name.clone(), row: row + 1, index, count })
     }
 
-    fn face(&mut self, corners: &[u32]) {
-        self.mesh.push_face(&[corners], None, 0);
+    /// A face that shows the picture of a number, where there is one.
+    fn face(&mut self, corners: &[u32], picture: f64) {
+        let known = picture >= 0.0 && picture < self.pictures.len() as f64;
+        self.mesh.push_face(&[corners], known.then(|| floor_count(picture)), 0);
     }
 
     fn finish(mut self, options: &ImportOptions) -> Result<Imported, ImportError> {
         let points = self.mesh.points.len();
         if self.mesh.faces.is_empty() {
-            return Err(ImportError::NoFaces { vertices: crate::geometry::number::count_of(points) });
+            return Err(ImportError::NoFaces { vertices: count_of(points) });
         }
         let corners = || self.mesh.corners.iter().map(|point| point.0).collect::<Vec<_>>();
         let mut notes = Vec::new();
@@ -316,7 +322,11 @@ impl Found {
         if let Some(weld) = options.weld {
             self.mesh.weld(weld);
         }
-        Ok(Imported { mesh: self.mesh, materials: Vec::new(), groups: Vec::new(), notes })
+        let name = |number: usize| format!("texture-{}", number + 1);
+        let look = |(number, path): (usize, &String)| MaterialLook::pictured(&name(number), path);
+        let materials: Vec<MaterialLook> = self.pictures.iter().enumerate().map(look).collect();
+        self.mesh.materials = materials.iter().map(|look| look.name.clone()).collect();
+        Ok(Imported { mesh: self.mesh, materials, groups: Vec::new(), notes })
     }
 }
 

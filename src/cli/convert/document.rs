@@ -12,6 +12,7 @@ use super::smoothing::{Smoothing, smoothing};
 use crate::geometry::mesh::polygon::NONE;
 use crate::geometry::mesh::{PolygonMesh, index};
 use crate::geometry::number::srgb_to_linear;
+use crate::import::look::PictureSource;
 use crate::import::{Imported, MaterialLook};
 use crate::language::format;
 use crate::language::spec::{SubdivisionScheme, Unit, Up, kebab};
@@ -138,7 +139,9 @@ impl Written<'_> {
             let [red, green, blue] = look.color.unwrap_or([1.0; 3]);
             let _ = writeln!(text, "color = {}", color([red, green, blue, opacity]));
         }
-        if opacity < 1.0 {
+        if let Some(cutoff) = look.cutoff {
+            let _ = writeln!(text, "alpha = \"mask\"\nalpha-cutoff = {}", rounded(cutoff));
+        } else if look.blends {
             text.push_str("alpha = \"blend\"\n");
         }
         for (key, value) in [("metallic", look.metallic), ("roughness", look.roughness)] {
@@ -152,12 +155,19 @@ impl Written<'_> {
         if look.double_sided {
             text.push_str("double-sided = true\n");
         }
-        if let Some(picture) = &look.texture {
-            match self.path_to(picture) {
-                Some(path) => {
-                    let _ = writeln!(text, "color-texture = {}", toml::Value::from(path));
+        for (field, picture) in look.pictures.all() {
+            let path = match &picture.source {
+                PictureSource::File(path) => path,
+                PictureSource::Inside { number, .. } => {
+                    notes.push(format!("picture {number} stands inside the file and was left out"));
+                    continue;
                 }
-                None => notes.push(format!("the picture {picture} is not beside the file and was left out")),
+            };
+            match self.path_to(path) {
+                Some(path) => {
+                    let _ = writeln!(text, "{field} = {}", toml::Value::from(path));
+                }
+                None => notes.push(format!("the picture {path} is not beside the file and was left out")),
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DMat4, DVec2, DVec3, Vec3};
 
+use super::look::{self, Mapping};
 use super::{GltfFault, GltfFile, Node, Part, Skin, open};
 use crate::geometry::mesh::polygon::NONE;
 use crate::geometry::mesh::weld::weld_equal;
@@ -10,7 +11,7 @@ use crate::import::{ImportError, ImportOptions, Imported, MaterialLook, Note};
 
 /// Reads a file: the triangles of the scene that is shown, in its space, states by their weights at rest, skinned meshes as
 /// they are bound, where their first joint at rest brings them. Points are joined where they are equal, or within `weld`. Lines and points are left
-/// out with a note, and so are the pictures of materials.
+/// out with a note.
 ///
 /// `open` reads other files by their paths from this one. Linear in what is read, a mesh once for each node that shows it.
 ///
@@ -50,8 +51,9 @@ pub fn read_weighted(
     let worlds = file.worlds();
     let data = file.data();
     let mut found = Found { mesh: PolygonMesh::default(), weights: Vec::new(), lines: 0 };
-    found.mesh.materials = file.document.materials().map(|own| name_of(&own)).collect();
     let mut notes = Vec::new();
+    let (materials, mappings) = look::read(&data, &mut notes);
+    found.mesh.materials = materials.iter().map(|look| look.name.clone()).collect();
     for node in shown {
         let Some(mesh) = nodes[node].mesh.and_then(|mesh| file.document.meshes().nth(mesh)) else { continue };
         let index = mesh.index();
@@ -61,17 +63,18 @@ pub fn read_weighted(
         let map = skin.as_ref().map_or_else(|| affine(&worlds[node]), |skin| bound(skin, &worlds));
         let weights = if nodes[node].weights.is_empty() { &mesh.weights } else { &nodes[node].weights };
         for part in &mesh.parts {
-            found.part(&morphed(part, weights), &map);
+            let mapping = part.material.and_then(|material| mappings.get(material));
+            found.part(&morphed(part, weights), &map, mapping);
             found.carry(part, skin.as_ref(), index)?;
         }
     }
-    finish(&file, found, notes, options)
+    finish(&file, found, (materials, notes), options)
 }
 
 fn finish(
     file: &GltfFile,
     found: Found,
-    notes: Vec<String>,
+    (materials, notes): (Vec<MaterialLook>, Vec<String>),
     options: &ImportOptions,
 ) -> Result<Weighted, ImportError> {
     let mut found = found;
@@ -97,14 +100,6 @@ fn finish(
     if lines > 0 {
         note(format!("{lines} lines are left out"));
     }
-    let pictured: Vec<String> = file.document.materials().filter(pictured).map(|own| name_of(&own)).collect();
-    if let Some(first) = pictured.first() {
-        let count = pictured.len();
-        note(format!(
-            "the pictures of {count} materials are left out, `{first}` the first; `materials` gives them others"
-        ));
-    }
-    let materials = file.document.materials().map(|own| look(&own)).collect();
     Ok(Weighted { imported: Imported { mesh, materials, groups: names(file), notes }, weights })
 }
 
@@ -212,7 +207,7 @@ struct Found {
 }
 
 impl Found {
-    fn part(&mut self, part: &Part, map: &DAffine3) {
+    fn part(&mut self, part: &Part, map: &DAffine3, mapping: Option<&Mapping>) {
         self.lines += part.lines.len();
         if part.triangles.is_empty() {
             return;
@@ -234,8 +229,12 @@ impl Found {
                     .push(normals.apply(Vec3::from_array(*normal).as_dvec3()).normalize_or_zero());
             }
         }
-        let place = |[u, v]: &[f32; 2]| DVec2::new((*u).into(), (*v).into());
-        self.mesh.uvs.extend(part.uvs[0].iter().map(place));
+        let uvs = &part.uvs[mapping.map_or(0, |mapping| mapping.set).min(1)];
+        let place = |[u, v]: &[f32; 2]| {
+            let place = DVec2::new((*u).into(), (*v).into());
+            mapping.map_or(place, |mapping| mapping.at(place))
+        };
+        self.mesh.uvs.extend(uvs.iter().map(place));
         let material = part.material.map(index);
         for corners in &part.triangles {
             let mut corners = *corners;
@@ -248,8 +247,7 @@ impl Found {
             }
             self.mesh.push_face(&[&corners.map(|corner| first + corner)], material, 0);
             let uv = |corner: u32| {
-                let known =
-                    part.uvs[0].get(corner as usize).is_some_and(|uv| uv[0].is_finite() && uv[1].is_finite());
+                let known = uvs.get(corner as usize).is_some_and(|uv| uv[0].is_finite() && uv[1].is_finite());
                 if known { first_uv + corner } else { NONE }
             };
             self.mesh.corner_uvs.extend(corners.map(uv));
@@ -323,39 +321,4 @@ impl Found {
         }
         (self.mesh.points, self.weights) = (points, weights);
     }
-}
-
-/// The name of a material, or its number.
-fn name_of(own: &gltf::Material<'_>) -> String {
-    match own.name().filter(|name| !name.is_empty()) {
-        Some(name) => name.to_owned(),
-        None => format!("material-{}", own.index().map_or(0, |index| index + 1)),
-    }
-}
-
-fn look(own: &gltf::Material<'_>) -> MaterialLook {
-    let metal = own.pbr_metallic_roughness();
-    let share = |value: f32| f64::from(value).clamp(0.0, 1.0);
-    let [red, green, blue, opacity] = metal.base_color_factor().map(share);
-    let opaque = own.alpha_mode() == gltf::material::AlphaMode::Opaque;
-    MaterialLook {
-        name: name_of(own),
-        color: Some([red, green, blue]),
-        opacity: Some(if opaque { 1.0 } else { opacity }),
-        metallic: Some(share(metal.metallic_factor())),
-        roughness: Some(share(metal.roughness_factor())),
-        emissive: Some(own.emissive_factor().map(share)),
-        double_sided: own.double_sided(),
-        texture: None,
-    }
-}
-
-/// Whether a material shows pictures.
-fn pictured(own: &gltf::Material<'_>) -> bool {
-    let metal = own.pbr_metallic_roughness();
-    metal.base_color_texture().is_some()
-        || metal.metallic_roughness_texture().is_some()
-        || own.normal_texture().is_some()
-        || own.occlusion_texture().is_some()
-        || own.emissive_texture().is_some()
 }

@@ -10,6 +10,7 @@
 mod accessor;
 mod clip;
 mod geometry;
+mod look;
 mod mesh;
 mod rig;
 

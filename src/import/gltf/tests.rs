@@ -1,7 +1,9 @@
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 
 use super::{GltfFault, Place, Steps, Track, base64, open, read, read_weighted, unescaped};
+use crate::import::image::Edge;
+use crate::import::look::{Picture, PictureSource, Pictures};
 use crate::import::{ImportError, ImportOptions, Imported};
 
 /// A square of four points at z = 0 as floats, the bytes of a strip of them, weights of all on the first of four joints,
@@ -81,6 +83,78 @@ fn nodes_place_what_they_show_and_mirrors_turn_it() {
     let look = &found.materials[0];
     assert_eq!((look.color, look.metallic), (Some([1.0, 0.5, 0.0]), Some(0.25)));
     found.mesh.validate().expect("valid");
+}
+
+/// Pictures inside the document and beside it, how they go on, and what lays them elsewhere.
+#[test]
+fn materials_bring_their_pictures() {
+    let with = |change: &dyn Fn(&mut Value)| {
+        read_all(|document| {
+            document["samplers"] = json!([{ "wrapS": 33071, "wrapT": 33071, "magFilter": 9728 }, { "wrapS": 33071 }]);
+            document["images"] = json!([{ "uri": "a%20b.png" }, { "uri": "data:image/png;base64,Zm9v", "name": "foo" }]);
+            document["textures"] = json!([{ "source": 0, "sampler": 0 }, { "source": 1 }, { "source": 1, "sampler": 1 }]);
+            document["accessors"].as_array_mut().expect("a list").push(
+                json!({ "bufferView": 0, "componentType": 5126, "type": "VEC2", "count": 4 }),
+            );
+            document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = 2.into();
+            document["materials"][0] = json!({
+                "name": "red", "alphaMode": "MASK", "normalTexture": { "index": 1, "scale": 0.5 },
+                "occlusionTexture": { "index": 1, "strength": 0.25 }, "emissiveTexture": { "index": 0 },
+                "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 }, "metallicRoughnessTexture": { "index": 1 } },
+                "extensions": { "KHR_materials_unlit": {}, "KHR_materials_sheen": {} },
+            });
+            change(document);
+        })
+        .expect("squares")
+    };
+    let plain = with(&|_| {});
+    let look = &plain.materials[0];
+    let outside = Picture { edge: Edge::Clamp, nearest: true, ..Picture::file("a b.png") };
+    let source = PictureSource::Inside { number: 1, name: "foo".to_owned(), bytes: b"foo".as_slice().into() };
+    let inside = Picture { source, edge: Edge::Repeat, nearest: false };
+    let expected = Pictures {
+        color: Some(outside.clone()),
+        metallic_roughness: Some(inside.clone()),
+        normal: Some((inside.clone(), 0.5)),
+        occlusion: Some((inside, 0.25)),
+        emissive: Some(outside),
+    };
+    assert_eq!(look.pictures, expected);
+    assert_eq!((look.unlit, look.cutoff, look.blends), (true, Some(0.5), false));
+    let notes: Vec<&str> = plain.notes.iter().map(|note| note.message.as_str()).collect();
+    assert_eq!(notes, ["material `red` has KHR_materials_sheen, which is left out"]);
+    // All pictures turned, scaled and moved alike: the coordinates are.
+    let turned = json!({ "KHR_texture_transform": { "offset": [0.5, 2], "rotation": std::f64::consts::FRAC_PI_2, "scale": [2, 3] } });
+    let moved = with(&|document| {
+        let material = &mut document["materials"][0];
+        for name in ["normalTexture", "occlusionTexture", "emissiveTexture"] {
+            material[name]["extensions"] = turned.clone();
+        }
+        for name in ["baseColorTexture", "metallicRoughnessTexture"] {
+            material["pbrMetallicRoughness"][name]["extensions"] = turned.clone();
+        }
+    });
+    assert_eq!(moved.materials[0].pictures, expected);
+    for (before, after) in plain.mesh.uvs.iter().zip(&moved.mesh.uvs) {
+        // A quarter turn against the clock, seen with v down: (u, v) becomes (v, -u).
+        let place = DVec2::new(0.5 + 3.0 * before.y, 2.0 - 2.0 * before.x);
+        assert!(after.distance(place) < 1e-12, "{before} {after}");
+    }
+    // One that lies elsewhere, one of a third set, and one that goes on in two ways.
+    let apart = with(&|document| {
+        let material = &mut document["materials"][0];
+        material["normalTexture"]["extensions"] = turned.clone();
+        material["occlusionTexture"]["texCoord"] = 2.into();
+        material["emissiveTexture"]["index"] = 2.into();
+    });
+    let left = Pictures { normal: None, occlusion: None, emissive: None, ..expected };
+    assert_eq!(apart.materials[0].pictures, left);
+    let told = |words: &str| apart.notes.iter().any(|note| note.message.contains(words));
+    assert!(told("normal picture of material `red` is left out: it is laid in another way"));
+    assert!(told(
+        "occlusion picture of material `red` is left out: it is laid by texture coordinates beyond"
+    ));
+    assert!(told("emissive picture of material `red` is left out: it goes on in another way"));
 }
 
 #[test]

@@ -2,6 +2,7 @@ use std::fmt::Write as _;
 
 use glam::DVec3;
 
+use super::super::MaterialLook;
 use super::super::keyframes::{STANDARD, STANDARD_FRAMES};
 use super::{Md2Fault, read};
 
@@ -46,6 +47,8 @@ fn points_faces_and_pictures_are_read() {
     let bytes = file(&["stand01", "stand02"]);
     let found = read(&bytes).expect("a model");
     assert_eq!(found.pictures, ["players/knight.pcx"]);
+    assert_eq!(found.materials, [MaterialLook::pictured("skin", "players/knight.pcx")]);
+    assert!(found.mesh.faces.iter().all(|face| face.material == Some(0)));
     assert_eq!(found.frames[0].points[1], DVec3::new(2.0, -1.0, 0.0));
     assert_eq!(found.frames[1].points[3], DVec3::new(1.0, -1.0, 5.0));
     assert_eq!(found.mesh.points, found.frames[0].points);

@@ -2,6 +2,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::super::ImportError;
 use super::super::keyframes::Keyframes;
+use super::super::look::Picture;
 use super::{Md3Fault, read};
 
 /// A name in a field of so many bytes.
@@ -73,7 +74,7 @@ fn surfaces_frames_and_tags_are_read() {
         (found.groups.clone(), found.mesh.materials.clone()),
         (found.mesh.materials.clone(), found.groups.clone())
     );
-    assert_eq!(found.materials[1].texture.as_deref(), Some("models/toy.png"));
+    assert_eq!(found.materials[1].pictures.color, Some(Picture::file("models/toy.png")));
     let names: Vec<&str> = found.frames.iter().map(|frame| frame.name.as_str()).collect();
     assert_eq!(names, ["walk1", "walk2"]);
     assert_eq!(found.sequences().len(), 1);

@@ -190,7 +190,9 @@ impl Whole<'_> {
             return index(known);
         }
         names.push(name.clone());
-        self.found.materials.push(MaterialLook { name, ..MaterialLook::default() });
+        // A shader may be defined elsewhere; one that is written as a path names a picture.
+        let path = if name.contains(['/', '\\', '.']) { name.as_str() } else { "" };
+        self.found.materials.push(MaterialLook::pictured(&name, path));
         index(names.len() - 1)
     }
 }

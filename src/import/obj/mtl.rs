@@ -1,9 +1,10 @@
 //! Material libraries: the little of them that says how a material looks.
 
-use crate::import::MaterialLook;
+use crate::import::image::Edge;
+use crate::import::look::{MaterialLook, Picture};
 
-/// Materials of a library. Anything that is not understood is passed over: a library never spoils its mesh.
-pub(super) fn read(bytes: &[u8]) -> Vec<MaterialLook> {
+/// Materials of a library that stands in a folder, empty or ending with `/`. Anything that is not understood is passed over: a library never spoils its mesh.
+pub(super) fn read(bytes: &[u8], folder: &str) -> Vec<MaterialLook> {
     let mut looks: Vec<MaterialLook> = Vec::new();
     let text = String::from_utf8_lossy(bytes);
     for line in text.trim_start_matches('\u{feff}').lines() {
@@ -18,12 +19,66 @@ pub(super) fn read(bytes: &[u8]) -> Vec<MaterialLook> {
             "Kd" => look.color = color(rest),
             "d" => look.opacity = part(rest.trim_start_matches("-halo")),
             "Tr" => look.opacity = part(rest).map(|transparency| 1.0 - transparency),
-            // Options such as `-s 1 1 1` stand before the path.
-            "map_Kd" if !rest.starts_with('-') && !rest.is_empty() => look.texture = Some(rest.to_owned()),
+            "Ke" => look.emissive = color(rest),
+            "Pm" => look.metallic = part(rest),
+            "Pr" => look.roughness = part(rest),
+            "map_Kd" => look.pictures.color = picture(folder, rest),
+            "map_Ke" => look.pictures.emissive = picture(folder, rest),
+            "norm" => look.pictures.normal = picture(folder, rest).map(|picture| (picture, 1.0)),
             _ => {}
         }
     }
+    for look in &mut looks {
+        look.blends = look.opacity.is_some_and(|opacity| opacity < 1.0);
+        // A picture whose color is not written shows as it is.
+        if look.pictures.color.is_some() {
+            look.color = look.color.or(Some([1.0; 3]));
+        }
+    }
     looks
+}
+
+/// A picture with the options before its path. One that is moved or scaled is left out: textures lie as they are.
+fn picture(folder: &str, line: &str) -> Option<Picture> {
+    let mut edge = Edge::Repeat;
+    let mut rest = line;
+    while let Some(option) = rest.strip_prefix('-') {
+        let (name, after) = option.split_once(char::is_whitespace)?;
+        let mut after = after.trim_start();
+        let mut word = || {
+            let (word, next) = after.split_once(char::is_whitespace)?;
+            after = next.trim_start();
+            Some(word)
+        };
+        match name {
+            "clamp" => edge = if word()? == "on" { Edge::Clamp } else { Edge::Repeat },
+            "blendu" | "blendv" | "cc" | "bm" | "boost" | "texres" | "imfchan" | "type" => {
+                word()?;
+            }
+            "mm" => {
+                word()?;
+                word()?;
+            }
+            "o" | "s" | "t" => {
+                let still = if name == "s" { 1.0 } else { 0.0 };
+                loop {
+                    let next = after.split_once(char::is_whitespace);
+                    let Some((Ok(value), next)) = next.map(|(word, next)| (word.parse::<f64>(), next)) else {
+                        break;
+                    };
+                    if value != still {
+                        return None;
+                    }
+                    after = next.trim_start();
+                }
+            }
+            _ => return None,
+        }
+        rest = after;
+    }
+    let inside = !rest.starts_with(['/', '\\']) && !rest.contains(':');
+    let path = if inside { format!("{folder}{rest}") } else { rest.to_owned() };
+    (!rest.is_empty()).then(|| Picture { edge, ..Picture::file(path) })
 }
 
 /// A number from 0 to 1.

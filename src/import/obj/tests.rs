@@ -2,8 +2,10 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{inside_folder, read};
+use super::{inside_folder, mtl, read};
 use crate::geometry::mesh::polygon::NONE;
+use crate::import::image::Edge;
+use crate::import::look::Picture;
 use crate::import::{ImportError, ImportOptions, Imported};
 
 fn text(text: &str) -> Result<Imported, ImportError> {
@@ -115,10 +117,34 @@ fn materials_and_their_libraries() {
     );
     assert_eq!(read.materials[0].color, Some([0.5, 0.25, 1.0]));
     assert_eq!(
-        (read.materials[0].opacity, read.materials[0].texture.as_deref()),
-        (Some(0.5), Some("red one.png"))
+        (read.materials[0].opacity, read.materials[0].pictures.color.clone()),
+        (Some(0.5), Some(Picture::file("a dir/red one.png")))
     );
     assert_eq!((read.materials[1].color, read.materials[1].opacity), (None, Some(0.75)));
+}
+
+#[test]
+fn options_of_pictures_are_read() {
+    let color = |line: &str| mtl::read(format!("newmtl a\n{line}").as_bytes(), "").remove(0).pictures.color;
+    let path = Some(Picture::file("a b.png"));
+    for options in ["", "-blendu on ", "-s 1 1 1 -o 0 0 ", "-mm 0 1 -bm 0.5 ", "-clamp off "] {
+        assert_eq!(color(&format!("map_Kd {options}a b.png")), path, "{options}");
+    }
+    let clamped = color("map_Kd -clamp on a b.png").expect("a picture");
+    assert_eq!(clamped, Picture { edge: Edge::Clamp, ..Picture::file("a b.png") });
+    for line in
+        ["map_Kd", "map_Kd -s 2 2 1 a.png", "map_Kd -o 0.5 a.png", "map_Kd -clamp", "map_Kd -wild on a.png"]
+    {
+        assert_eq!(color(line), None, "{line}");
+    }
+    let look =
+        mtl::read(b"newmtl a\nPm 1\nPr 0.25\nKe 0 0.5 1\nmap_Ke glow.png\nnorm bumps.png\n", "b/").remove(0);
+    assert_eq!(
+        (look.metallic, look.roughness, look.emissive, look.color),
+        (Some(1.0), Some(0.25), Some([0.0, 0.5, 1.0]), None)
+    );
+    assert_eq!(look.pictures.emissive, Some(Picture::file("b/glow.png")));
+    assert_eq!(look.pictures.normal, Some((Picture::file("b/bumps.png"), 1.0)));
 }
 
 #[test]

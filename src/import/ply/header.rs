@@ -43,6 +43,8 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub(super) format: Format,
     pub(super) elements: Vec<Element>,
+    /// Paths of pictures (`comment TextureFile`, as MeshLab writes it).
+    pub(super) pictures: Vec<String>,
 }
 
 /// The most properties of all elements together.
@@ -99,7 +101,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Header, usize), PlyFault> {
         return Err(lines.fault("`ply`", first));
     }
     let (mut format, mut elements) = (None, Vec::<Element>::new());
-    let mut properties = 0;
+    let (mut properties, mut pictures) = (0, Vec::new());
     loop {
         let line = lines.next();
         let text = line.and_then(|line| std::str::from_utf8(line).ok());
@@ -117,6 +119,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Header, usize), PlyFault> {
                     }
                 };
             }
+            ["comment", "TextureFile", ..] if pictures.len() < MOST_PROPERTIES => {
+                let path = text.and_then(|text| text.split_once("TextureFile"));
+                pictures.extend(path.map(|(_, path)| path.trim().to_owned()).filter(|path| !path.is_empty()));
+            }
             ["comment" | "obj_info", ..] => {}
             [] if line.is_some() => {}
             ["element", name, count] => {
@@ -133,7 +139,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Header, usize), PlyFault> {
             }
             ["end_header"] => {
                 let format = format.ok_or_else(|| lines.fault("a line that begins with `format`", line))?;
-                return Ok((Header { format, elements }, lines.at));
+                return Ok((Header { format, elements, pictures }, lines.at));
             }
             _ => return Err(lines.fault("`format`, `comment`, `element`, `property` or `end_header`", line)),
         }

@@ -1,6 +1,6 @@
 use glam::{DVec2, DVec3};
 
-use super::super::{ImportError, ImportOptions, Imported};
+use super::super::{ImportError, ImportOptions, Imported, MaterialLook};
 use super::{PlyFault, read};
 use crate::geometry::mesh::Color;
 use crate::geometry::mesh::polygon::NONE;
@@ -37,6 +37,25 @@ fn binary(big: bool) -> Vec<u8> {
 
 fn model(bytes: &[u8]) -> Imported {
     read(bytes, &ImportOptions::default()).expect("a mesh")
+}
+
+/// Faces show the pictures of their numbers, as MeshLab writes them; without numbers the first.
+#[test]
+fn pictures_are_named_by_comments() {
+    let pictured =
+        TEXT.replace("comment two faces", "comment TextureFile a b.png\ncomment TextureFile c.png");
+    let materials = |text: &str| {
+        let found = model(text.as_bytes());
+        found.mesh.validate().expect("valid");
+        assert_eq!(found.materials[0], MaterialLook::pictured("texture-1", "a b.png"));
+        assert_eq!(found.mesh.materials, ["texture-1", "texture-2"]);
+        found.mesh.faces.iter().map(|face| face.material).collect::<Vec<_>>()
+    };
+    assert_eq!(materials(&pictured), [Some(0), Some(0)]);
+    let numbered = pictured.replace("uchar flags", "uchar texnumber");
+    assert_eq!(materials(&numbered), [Some(1), Some(1)]);
+    let beyond = numbered.replace("\n1 3 1 4 2\n", "\n2 3 1 4 2\n");
+    assert_eq!(materials(&beyond), [Some(1), None]);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use super::StudioFault;
 use super::chunk::Chunk;
 use super::keyframe::{self, Node};
 use crate::geometry::number::srgb_to_linear;
-use crate::import::MaterialLook;
+use crate::import::look::{MaterialLook, Picture};
 
 /// A file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -231,7 +231,8 @@ fn material(chunk: Chunk<'_>) -> Result<MaterialLook, StudioFault> {
             0xa081 => look.double_sided = true,
             0xa200 => chunk.inside(|mut chunk| {
                 if chunk.id == 0xa300 {
-                    look.texture = Some(chunk.text("the name of a picture")?).filter(|name| !name.is_empty());
+                    let path = chunk.text("the name of a picture")?;
+                    look.pictures.color = Some(path).filter(|path| !path.is_empty()).map(Picture::file);
                 }
                 Ok(())
             })?,
@@ -239,6 +240,11 @@ fn material(chunk: Chunk<'_>) -> Result<MaterialLook, StudioFault> {
         }
         Ok(())
     })?;
+    look.blends = look.opacity.is_some_and(|opacity| opacity < 1.0);
+    // A picture covers the color.
+    if look.pictures.color.is_some() {
+        look.color = Some([1.0; 3]);
+    }
     Ok(look)
 }
 

@@ -1,5 +1,6 @@
 use glam::DVec3;
 
+use super::super::look::Picture;
 use super::super::{ImportError, ImportOptions};
 use super::{StudioFault, read, scene};
 use crate::geometry::number::srgb_to_linear;
@@ -127,8 +128,8 @@ fn meshes_materials_and_smoothing_are_read() {
     assert_eq!((found.mesh.points.len(), found.mesh.faces.len()), (8, 8), "equal points are one");
     assert_eq!(found.groups, ["left", "right"]);
     let look = &found.materials[0];
-    assert_eq!((look.color, look.opacity), (Some([1.0, srgb_to_linear(0.2), 0.0]), Some(0.75)));
-    assert_eq!(look.texture.as_deref(), Some("BRICK.JPG"));
+    assert_eq!((look.color, look.opacity), (Some([1.0; 3]), Some(0.75)), "its picture covers its color");
+    assert_eq!(look.pictures.color, Some(Picture::file("BRICK.JPG")));
     let faces: Vec<(Option<u32>, u32)> =
         found.mesh.faces[..4].iter().map(|face| (face.material, face.smoothing)).collect();
     assert_eq!(faces, [(None, 1), (Some(0), 1), (None, 3), (Some(0), 2)]);

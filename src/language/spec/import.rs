@@ -30,6 +30,10 @@ table! {
     /// mesh (MD5), or a Quake model (MD2, MD3), whose frames become morphs of the shape where a node shows it, with a name each,
     /// and whose sequences become clips. The tags of an MD3 file are nodes with their names in kebab-case, which move with the
     /// frames and carry others as sockets do.
+    ///
+    /// Materials of files bring their colors and pictures: those of a glTF file stand in it or beside it, and what OBJ (by its
+    /// material library), PLY, 3DS, MD2, MD3 and MD5 files name is looked for beside the file, as PNG or JPEG, whatever
+    /// ending and letters' case the file writes. A missing one is a warning. `materials` gives others.
     "import" pub Import {
         /// The file; the path is relative to this document and stays inside the project.
         file: Sp<FilePath>;
