@@ -155,7 +155,7 @@ class Scale:
 
 def compare(asset: str, report: Facts, measured: list[Measured]) -> list[Finding]:
     """Every finding for one asset."""
-    report = {**report, "shapes": {name: with_lines(shape) for name, shape in report.get("shapes", {}).items()}}
+    report = {**report, "shapes": by_mesh({n: with_lines(shape) for n, shape in report.get("shapes", {}).items()})}
     findings = list(missing(asset, report))
     claimed = with_counted(report["shapes"], measured)
     for one in measured:
@@ -197,6 +197,11 @@ def expected(report: Facts, totals: Facts) -> Facts:
     if not dropped:
         return totals
     return {**totals, "validator-messages": left, "validator-infos": totals["validator-infos"] - dropped}
+
+
+def by_mesh(shapes: dict[str, Facts]) -> dict[str, Facts]:
+    """The claims by the names of meshes: what nodes show with several materials is a mesh for each."""
+    return {name: claims for own, claims in shapes.items() for name in claims.get("meshes", [own])}
 
 
 def with_lines(claims: Facts) -> Facts:

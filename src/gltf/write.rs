@@ -75,8 +75,10 @@ pub struct WrittenAnimation {
 pub struct WrittenGeometry {
     /// Name of the shape.
     pub name: String,
-    /// A mesh of the file that shows it.
+    /// The first mesh of the file that shows it.
     pub mesh: usize,
+    /// All meshes of the file that show it; where nodes show it with several materials, there are several.
+    pub meshes: Vec<usize>,
     /// Bytes that its vertices and indices add to the file, without materials; what it shares with a geometry before it is
     /// counted there.
     pub bytes: u64,
@@ -184,9 +186,14 @@ pub fn write(checked: Checked<'_>, form: &Form) -> Result<Written, WriteError> {
         properties: if has_properties { animation.properties.clone() } else { Vec::new() },
     };
     let animations = written.iter().map(animated).collect();
+    let mut meshes = vec![Vec::new(); scene.geometries.len()];
+    for (index, mesh) in scene.meshes.iter().enumerate() {
+        meshes[mesh.geometry].push(index);
+    }
     let known = |(index, geometry): (usize, &Geometry)| WrittenGeometry {
         name: geometry.name.clone(),
-        mesh: scene.meshes.iter().position(|mesh| mesh.geometry == index).unwrap_or(0),
+        mesh: meshes[index].first().copied().unwrap_or(0),
+        meshes: meshes[index].clone(),
         bytes: shared[index].2,
         deviation: geometry.deviation,
         tolerance: geometry.tolerance,

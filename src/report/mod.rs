@@ -172,7 +172,11 @@ pub struct Extent {
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct ShapeFacts {
-    /// Primitives of its mesh.
+    /// Names of the meshes that show it, in the order of the file, where nodes show it with several materials; all are
+    /// of one geometry, which is measured once. Empty where one mesh of its own name shows it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub meshes: Vec<String>,
+    /// Primitives of its mesh, of each where there are several.
     pub primitives: usize,
     /// What is measured.
     #[serde(flatten)]
@@ -320,7 +324,9 @@ pub fn measure(
         let measured = (anchored
             .then(|| measure_deviation(&file.geometries[known.mesh], known, model, *handle)))
         .flatten();
-        facts.insert(known.name.clone(), shape_facts(&file, known, (model, *handle), measured)?);
+        let mut own = shape_facts(&file, known, (model, *handle), measured)?;
+        own.meshes = meshes(&file, &known.meshes, &known.name);
+        facts.insert(known.name.clone(), own);
     }
     let nodes = nodes(&file);
     let (skins, clips) = motion::motion(&file, written, model)?;
@@ -354,6 +360,13 @@ pub fn measure(
     })
 }
 
+/// The names of meshes that show one geometry, unless its own name says it all.
+fn meshes(file: &Read<'_>, meshes: &[usize], own: &str) -> Vec<String> {
+    let names = meshes.iter().map(|mesh| file.root.meshes[*mesh].name.clone().unwrap_or_default());
+    let names: Vec<String> = names.collect();
+    if names.as_slice() == [own] { Vec::new() } else { names }
+}
+
 fn shape_facts(
     file: &Read<'_>,
     known: &WrittenGeometry,
@@ -371,6 +384,7 @@ fn shape_facts(
         facts.bounds = together(facts.bounds, lines.bounds);
     }
     Ok(ShapeFacts {
+        meshes: Vec::new(),
         primitives: geometry.parts.len() + geometry.lines.parts.len(),
         colors: geometry.colors.map(|colors| ColorFacts { min: colors.min, max: colors.max }),
         attributes: geometry
@@ -478,19 +492,11 @@ fn totals(
         nodes: nodes.len(),
         ..Totals::default()
     };
-    for facts in shapes.values() {
-        totals.primitives += facts.primitives;
-        totals.triangles += facts.facts.triangles;
-        totals.vertices += facts.facts.vertices;
-        if let Some(lines) = &facts.lines {
-            totals.segments += lines.segments;
-            totals.vertices += lines.vertices;
-        }
-    }
-    for body in &file.geometries[written.collider_meshes.clone()] {
-        totals.primitives += body.parts.len();
-        totals.triangles += body.indices.len() as u64 / 3;
-        totals.vertices += body.positions.len() as u64;
+    for mesh in &file.geometries {
+        totals.primitives += mesh.parts.len() + mesh.lines.parts.len();
+        totals.triangles += mesh.indices.len() as u64 / 3;
+        totals.segments += mesh.lines.segments.len() as u64;
+        totals.vertices += (mesh.positions.len() + mesh.lines.positions.len()) as u64;
     }
     let mut bounds = Bounds::EMPTY;
     for (node, facts) in file.root.nodes.iter().zip(nodes) {
@@ -504,7 +510,7 @@ fn totals(
         let matrix = carried.map_or(&facts.matrix, |root| &nodes[root].matrix);
         let matrix = glam::DMat4::from_cols_array(matrix);
         let plain = matrix == glam::DMat4::IDENTITY;
-        let known = written.geometries.iter().find(|known| known.mesh == mesh.value());
+        let known = written.geometries.iter().find(|known| known.meshes.contains(&mesh.value()));
         bounds = match known.and_then(|known| shapes.get(&known.name)).filter(|_| plain) {
             Some(facts) => bounds.union(extent(&facts.facts)),
             None => {

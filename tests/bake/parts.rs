@@ -133,3 +133,45 @@ fn levels_have_the_parts_of_the_finest() {
         assert_eq!(names(mesh), names(0));
     }
 }
+
+#[test]
+fn a_shape_shown_with_several_materials_is_a_mesh_for_each_measured_once() {
+    let balls = "[shape.ball.sphere]
+radius = 1
+[material.gold]
+metallic = 1
+[material.red]
+color = \"#ff0000\"
+[node.plain]
+shape = \"ball\"
+[node.gold]
+shape = \"ball\"
+material = \"gold\"
+at = [3, 0, 0]
+[node.red]
+shape = \"ball\"
+material = \"red\"
+at = [6, 0, 0]
+[node.red-too]
+shape = \"ball\"
+material = \"red\"
+at = [9, 0, 0]
+[lod]
+levels = 2
+";
+    let [made] = &files(balls, &[Profile::Core])[..] else { panic!("one file") };
+    let glb = Glb::new(&made.bytes);
+    let names: Vec<_> = glb.list("meshes").iter().map(|mesh| mesh["name"].clone()).collect();
+    assert_eq!(names, ["ball", "ball.gold", "ball.red", "ball_LOD1", "ball.gold_LOD1", "ball.red_LOD1"]);
+    let report = made.report.as_ref().expect("a report");
+    let facts = |name: &str| &report.shapes[name];
+    assert_eq!(facts("ball").meshes, ["ball", "ball.gold", "ball.red"]);
+    assert_eq!(facts("ball_LOD1").meshes, ["ball_LOD1", "ball.gold_LOD1", "ball.red_LOD1"]);
+    let totals = &report.totals;
+    let each = |count: fn(&kiln::report::ShapeFacts) -> u64| {
+        report.shapes.values().map(|own| 3 * count(own)).sum::<u64>()
+    };
+    assert_eq!(totals.triangles, each(|own| own.facts.triangles));
+    assert_eq!(totals.vertices, each(|own| own.facts.vertices));
+    assert_eq!((totals.meshes, totals.primitives), (6, 6));
+}
