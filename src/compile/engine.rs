@@ -7,7 +7,7 @@
 use crate::gltf::Profile;
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
-use crate::language::spec::{Clip, ColliderForm, Definition, LodForm, ShapeDefinition, Spec};
+use crate::language::spec::{Clip, ColliderForm, Definition, LodForm, MotionPath, ShapeDefinition, Spec};
 
 /// How levels of detail stand in the files of a profile: as the document says, else by the extension where that is read or the
 /// file is for everyone, and in files of their own for engines that take one level a file.
@@ -92,6 +92,9 @@ pub(super) fn unread(profile: Profile, spec: &Spec) -> Vec<Diagnostic> {
 
 /// Tracks of properties that an engine's loader does not play, the first of each clip.
 fn unread_properties(profile: Profile, engine: &str, spec: &Spec) -> Vec<Diagnostic> {
+    if profile == Profile::Babylon {
+        return spec.clips.values().filter_map(mistaken_by_babylon).collect();
+    }
     if plays_properties(profile) {
         return Vec::new();
     }
@@ -108,6 +111,21 @@ fn unread_properties(profile: Profile, engine: &str, spec: &Spec) -> Vec<Diagnos
         )
     };
     spec.clips.values().filter_map(of_clip).collect()
+}
+
+/// The first track of a clip that Babylon.js plays as something else: its loader knows metal twice, of which the second is
+/// meant to be roughness (`KHR_animation_pointer.data.ts`, seen in 9.28 by what it shows).
+fn mistaken_by_babylon(clip: &Definition<Clip>) -> Option<Diagnostic> {
+    let mut paths = clip.value.track.iter().filter_map(|track| track.path.as_ref());
+    let path = paths.find(|path| matches!(path.value, MotionPath::Metallic | MotionPath::Roughness))?;
+    let how = match path.value {
+        MotionPath::Roughness => "plays no changes of `roughness`",
+        _ => "plays changes of `metallic` as changes of roughness",
+    };
+    let report = Diagnostic::warning(Code::EngineProperties, format!("Babylon.js {how}"));
+    Some(report.at(path.span, "this change").help(
+        "change it in the game, or change `color`, `emissive` or a property of clearcoat in its place",
+    ))
 }
 
 /// Whether the loader of an engine plays changes of properties.

@@ -6,7 +6,8 @@
 /// r180, Babylon.js 8, Blender 4.5.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Profile {
-    /// Floats; needs no extension. Every engine opens it.
+    /// Floats; needs no extension. Every engine opens it, but for Bevy where clips change materials, lights or cameras: its reader
+    /// refuses such a file, and its own profile leaves that out.
     #[default]
     Core,
     /// Positions on one grid of 16 bits, normals and tangents in 8, texture coordinates in 16 where they lie in the unit

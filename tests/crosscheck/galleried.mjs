@@ -1,6 +1,6 @@
 // Opens the page of a gallery in a real browser, clicks on pictures, and prints what was seen as JSON.
 // node galleried.mjs ADDRESS PICTURE
-import { launch, open } from './browser.mjs';
+import { launch, open } from '../../scripts/engines/chromium.mjs';
 
 const [address, picture] = process.argv.slice(2);
 const found = { complaints: [], shown: [] };

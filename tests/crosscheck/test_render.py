@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[2]
 SIZE = 400
+SILHOUETTES = ROOT / "scripts" / "engines" / "blender_silhouettes.py"
 SPECS = ["chess/rook", "patches/teapot", "solids/bracket", "formula/seashell", "rope/torus-knot", "garden/fence"]
 
 
@@ -29,16 +31,10 @@ def test_silhouettes_are_those_of_blender(kiln: Kiln, tmp_path: Path, spec: str)
     view = ["--view", "30,20", "--orthographic", "--background", "transparent", "--size", str(SIZE)]
     kiln.run("render", str(file), "--out", str(picture), *view)
     own = np.asarray(Image.open(picture), dtype=float)[:, :, 3] / 255.0
-    out = tmp_path / "silhouette.npy"
-    line = [
-        sys.executable,
-        str(Path(__file__).parent / "blender_silhouette.py"),
-        str(file),
-        str(SIZE),
-        "30",
-        "20",
-        str(out),
-    ]
+    out, asked = tmp_path / "silhouette.npy", tmp_path / "asked.json"
+    job = {"path": str(file), "hidden": [], "out": str(out)}
+    asked.write_text(json.dumps({"size": SIZE, "view": [30, 20], "files": [job]}))
+    line = [sys.executable, str(SILHOUETTES), str(asked), str(tmp_path / "cameras.json")]
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "scripts")}
     subprocess.run(line, check=True, stdout=subprocess.DEVNULL, env=environment)
     other = np.load(out)

@@ -6,7 +6,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import readline from 'node:readline';
 
-import { launch, open as openPage } from './browser.mjs';
+import { launch, open as openPage } from '../../scripts/engines/chromium.mjs';
 
 const [program, folder, three, specs] = process.argv.slice(2);
 const SECONDS = 30;

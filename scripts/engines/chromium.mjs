@@ -1,7 +1,7 @@
 // A real browser for tests of pages: Debian's Chromium, drawing without a graphics card.
 import { createRequire } from 'node:module';
 
-const { chromium } = createRequire(new URL('../../scripts/package.json', import.meta.url))('playwright-core');
+const { chromium } = createRequire(new URL('../package.json', import.meta.url))('playwright-core');
 
 const ARGUMENTS = [
   '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage',
