@@ -39,12 +39,14 @@ impl Builder<'_> {
             Some(import) => Some(self.imported_motion(written, import)?),
             None => None,
         };
-        let lasting = imported.as_ref().map_or(0.0, |(lasting, _)| *lasting);
+        let lasting = imported.as_ref().map_or(0.0, |motion| motion.lasting);
         let duration = self.duration(written, lasting, span)?;
         self.check_samples(written, duration, span)?;
         let place = written.import.as_ref().map_or(span, |import| import.file.span);
-        let imported = imported.into_iter().flat_map(|(_, tracks)| tracks);
-        let mut tracks: Vec<(ClipTrack, Span)> = imported.map(|track| (track, place)).collect();
+        let imported = imported.unwrap_or_default();
+        let mut tracks: Vec<(ClipTrack, Span)> =
+            imported.tracks.into_iter().map(|track| (track, place)).collect();
+        let changing = imported.properties.into_iter().map(|track| (track, place)).collect();
         let mut good = true;
         for track in written.track.iter().filter(|track| !is_property(track)) {
             match self.track(written, track, duration) {
@@ -65,7 +67,7 @@ impl Builder<'_> {
             return None;
         }
         good &= self.check_weights(&tracks) && self.check_events(written, duration);
-        let properties = self.properties(written, duration)?;
+        let properties = self.properties(written, changing, duration)?;
         if !good {
             return None;
         }

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4};
 
 use super::Builder;
-use super::import::{axes_between, default_up, has_frames};
+use super::import::{axes_between, default_up, has_frames, is_gltf};
 use crate::geometry::mesh;
 use crate::geometry::number::single;
 use crate::import::keyframes::{Keyframes, Sequence};
@@ -53,22 +53,27 @@ impl<'a> Builder<'a> {
         named
     }
 
-    /// Makes the frames of files states of the shapes that nodes show.
+    /// Makes the frames and morph targets of files states of the shapes that nodes show.
     pub(super) fn frames(&mut self) -> Vec<Played<'a>> {
         let spec = self.spec;
         let mut all = Vec::new();
         for (name, definition) in &spec.shapes {
             let Kind::Import(import) = &definition.value.kind else { continue };
             let Some(shape) = self.shapes.get(name).copied().flatten() else { continue };
-            if has_frames(&import.file) && !self.showing(shape).is_empty() {
+            if self.showing(shape).is_empty() {
+                continue;
+            }
+            if has_frames(&import.file) {
                 all.extend(self.frames_of(name, shape, import, definition.span));
+            } else if is_gltf(&import.file) {
+                self.file_states(name, shape, import, definition.span);
             }
         }
         all
     }
 
     /// The nodes that show a shape.
-    fn showing(&self, shape: ShapeHandle) -> Vec<usize> {
+    pub(super) fn showing(&self, shape: ShapeHandle) -> Vec<usize> {
         (0..self.model.nodes.len()).filter(|node| self.model.nodes[*node].shape == Some(shape)).collect()
     }
 
@@ -95,7 +100,7 @@ impl<'a> Builder<'a> {
         let mut names: Vec<String> = Vec::with_capacity(found.frames.len());
         let mut targets = Vec::with_capacity(found.frames.len());
         for (number, frame) in found.frames.iter().enumerate() {
-            let target = unique(&frame.name, number, &names);
+            let target = unique(&frame.name, number, "frame", &names);
             names.push(target.clone());
             if number == own {
                 targets.push(None);
@@ -202,7 +207,7 @@ impl<'a> Builder<'a> {
             }
             let mut known: Vec<String> = Vec::with_capacity(played.sequences.len());
             for sequence in &played.sequences {
-                known.push(unique(&sequence.name, sequence.frames.start, &known));
+                known.push(unique(&sequence.name, sequence.frames.start, "frame", &known));
             }
             if let Some(name) = played.import.r#loop.iter().find(|name| !known.contains(&name.value)) {
                 self.report(unknown_sequence(name, &known));
@@ -296,9 +301,9 @@ fn tag_courses(
     courses
 }
 
-/// A name in kebab-case, with a number where another has it; of letters that make none, that of its number.
-fn unique(frame: &str, number: usize, taken: &[String]) -> String {
-    numbered(kebab(frame).unwrap_or_else(|| format!("frame-{}", number + 1)), taken)
+/// A name in kebab-case, with a number where another has it; of letters that make none, a word with its number.
+pub(super) fn unique(name: &str, number: usize, word: &str, taken: &[String]) -> String {
+    numbered(kebab(name).unwrap_or_else(|| format!("{word}-{}", number + 1)), taken)
 }
 
 /// A name, with a number where another has it.

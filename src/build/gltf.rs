@@ -8,8 +8,9 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4};
 
 use super::Builder;
-use super::import::beside;
-use super::motion_file::{joint_name, no_joint, rooted, still};
+use super::file_state::Playing;
+use super::import::{NOTES, beside};
+use super::motion_file::{FileMotion, joint_name, no_joint, rooted, still};
 use crate::import::bvh::BvhJoint;
 use crate::import::gltf::{self, Channel, ChannelPath, Clip, GltfFile, Place, Rig, Steps};
 use crate::import::{ImportError, ImportOptions};
@@ -92,16 +93,46 @@ impl Builder<'_> {
         Some((names.collect(), found.weights.iter().map(of).collect()))
     }
 
-    /// The motion of a file: how long it lasts, and its tracks.
+    /// The motion of a file.
     pub(super) fn gltf_motion(
         &mut self,
         clip: &spec::Clip,
         import: &Sp<spec::MotionImport>,
-    ) -> Option<(f64, Vec<ClipTrack>)> {
+    ) -> Option<FileMotion> {
         let (file, rig) = self.gltf_file(&import.file)?;
         let clips = file.clips();
         let clips = clips.map_err(|fault| self.refused(&import.file, &ImportError::from(fault))).ok()?;
         let own = self.animation(import, &clips)?;
+        let is_joint = |node: usize| rig.joints.iter().any(|joint| joint.node == node);
+        let nodes = file.nodes();
+        let playing = Playing { own, nodes: &nodes, is_joint: &is_joint };
+        let (mut tracks, properties, left_out) = self.beside_joints(&import.file.value, &playing);
+        let moves_joints = own.channels.iter().any(|channel| is_joint(channel.node));
+        if moves_joints || !(rig.joints.is_empty() || self.spec.skeletons.is_empty()) {
+            tracks.extend(self.joint_tracks(clip, import, (&rig, own))?);
+        }
+        if tracks.is_empty() && properties.is_empty() {
+            let message = format!(
+                "animation `{}` of {} moves nothing of this document",
+                own.name, import.file.value.written
+            );
+            let report = Diagnostic::error(Code::BadTrack, message)
+                .at(import.file.span, "no joint, state or material of it");
+            let report = left_out.into_iter().take(NOTES).fold(report, Diagnostic::note);
+            self.report(report.help("import what it moves from the same file: joints by `[skeleton.NAME.import]`, states and materials by `[shape.NAME.import]` of a shape that a node shows"));
+            return None;
+        }
+        self.tell_left_out(&import.file, own, left_out);
+        Some(FileMotion { lasting: own.duration(), tracks, properties })
+    }
+
+    /// How the joints of a file move.
+    fn joint_tracks(
+        &mut self,
+        clip: &spec::Clip,
+        import: &Sp<spec::MotionImport>,
+        (rig, own): (&Rig, &Clip),
+    ) -> Option<Vec<ClipTrack>> {
         let first = rig.joints.first().map_or("", |joint| joint.name.as_str());
         let skeleton = self.clip_skeleton(clip, &Sp::new(joint_name(first, 0), import.file.span))?;
         let bones = self.model.skeletons[skeleton].skeleton.clone();
@@ -109,7 +140,6 @@ impl Builder<'_> {
         let written = written.and_then(|definition| definition.value.import.as_ref());
         let turned = self.turned_as(import, written);
         let into = self.model.frame.map() * DAffine3::from_mat3(turned.axes * turned.scale);
-        self.tell_left_out(&import.file, own, &rig);
         let mut tracks = Vec::new();
         for (index, joint) in rig.joints.iter().enumerate() {
             let name = joint_name(&joint.name, index);
@@ -117,7 +147,7 @@ impl Builder<'_> {
                 self.report(no_joint(&name, &joint.name, &bones, import.file.span));
                 return None;
             };
-            let around = around(&bones, found, (&rig, index), &into);
+            let around = around(&bones, found, (rig, index), &into);
             let within = (into * joint.bind).inverse() * bones.joints[found].bind();
             let channels: Vec<&Channel> =
                 own.channels.iter().filter(|channel| channel.node == joint.node).collect();
@@ -133,7 +163,7 @@ impl Builder<'_> {
             let (space, clamp) = (Space::Rest, None);
             tracks.extend(courses.into_iter().map(|course| ClipTrack { target, course, space, clamp }));
         }
-        Some((own.duration(), tracks))
+        Some(tracks)
     }
 
     /// The animation that is asked for.
@@ -155,21 +185,19 @@ impl Builder<'_> {
         found
     }
 
-    /// Warns of channels that move what is no joint.
-    fn tell_left_out(&mut self, file: &Sp<FilePath>, own: &Clip, rig: &Rig) {
-        let joint = |channel: &&Channel| rig.joints.iter().any(|joint| joint.node == channel.node);
-        let weights = own.channels.iter().filter(|channel| channel.path() == ChannelPath::Weights).count();
-        let others = own.channels.iter().filter(|channel| !joint(channel)).count();
-        if weights.max(others) == 0 {
+    /// Warns of what of an animation is not played.
+    fn tell_left_out(&mut self, file: &Sp<FilePath>, own: &Clip, left_out: Vec<String>) {
+        if left_out.is_empty() {
             return;
         }
         let message = format!("animation `{}` of {} was not imported whole", own.name, file.value.written);
         let mut report = Diagnostic::warning(Code::ImportNote, message).at(file.span, "see the notes");
-        if others > 0 {
-            report = report.note(format!("{others} of its channels move nodes that are no joints of a skin"));
+        let count = left_out.len();
+        for words in left_out.into_iter().take(NOTES) {
+            report = report.note(format!("left out: {words}"));
         }
-        if weights > 0 {
-            report = report.note(format!("{weights} of its channels are weights of morph targets"));
+        if count > NOTES {
+            report = report.note(format!("and {} more", count - NOTES));
         }
         self.report(report);
     }
@@ -286,12 +314,21 @@ fn parts(place: &Place) -> Option<(DQuat, DVec3, DVec3)> {
 
 /// The keys of a channel, carried over.
 fn keys(channel: &Channel, value: &dyn Fn(DVec4) -> DVec4, slope: &dyn Fn(DVec4) -> DVec4) -> Keys {
-    let numbers = channel.numbers();
-    let times: Vec<f64> = channel.times.iter().map(|time| f64::from(*time)).collect();
-    match channel.steps {
+    keys_of((&channel.times, channel.steps), channel.numbers(), value, slope)
+}
+
+/// Keys of numbers at times, of which cubics have three for each, carried over.
+pub(super) fn keys_of(
+    (times, steps): (&[f32], Steps),
+    numbers: Vec<DVec4>,
+    value: &dyn Fn(DVec4) -> DVec4,
+    slope: &dyn Fn(DVec4) -> DVec4,
+) -> Keys {
+    let times: Vec<f64> = times.iter().map(|time| f64::from(*time)).collect();
+    match steps {
         Steps::Step | Steps::Linear => {
             let interpolation =
-                if channel.steps == Steps::Step { Interpolation::Step } else { Interpolation::Linear };
+                if steps == Steps::Step { Interpolation::Step } else { Interpolation::Linear };
             Keys::new((times, numbers.into_iter().map(value).collect()), &[], interpolation, false)
         }
         Steps::Cubic => {

@@ -24,7 +24,7 @@ pub(super) fn axes_between(file: Up, document: Up) -> DMat3 {
 }
 
 /// Most notes of one file that are told one by one.
-const NOTES: usize = 4;
+pub(super) const NOTES: usize = 4;
 
 impl Builder<'_> {
     /// The mesh of a file; whether its shape has a material of its own, which is that of all faces whose material the file
@@ -218,9 +218,15 @@ impl Builder<'_> {
         imported: &Imported,
         notes: &mut Vec<Note>,
     ) -> Vec<Option<MaterialHandle>> {
-        let look = |(index, name): (usize, &String)| match written.get(name) {
-            Some(target) => self.material(&target.value.0),
-            None => imported.materials.get(index).and_then(|look| self.look(file, look, notes)),
+        let look = |(index, name): (usize, &String)| {
+            let made = match written.get(name) {
+                Some(target) => self.material(&target.value.0),
+                None => imported.materials.get(index).and_then(|look| self.look(file, look, notes)),
+            };
+            if let Some(made) = made {
+                self.from_files.wears(file, index, made);
+            }
+            made
         };
         imported.mesh.materials.iter().enumerate().map(look).collect()
     }
@@ -241,6 +247,11 @@ pub(super) fn beside<'f>(
 /// The axis that points up in files of its ending by custom.
 pub(super) fn default_up(file: &Sp<FilePath>) -> Up {
     if import::z_is_up(&file.value.extension()) { Up::Z } else { Up::Y }
+}
+
+/// Whether a file of its name is glTF.
+pub(super) fn is_gltf(file: &Sp<FilePath>) -> bool {
+    matches!(file.value.extension().as_str(), "glb" | "gltf")
 }
 
 /// Whether a file of its name has frames.

@@ -6,7 +6,7 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use super::Builder;
-use super::motion_file::{Turned, joint_name, no_joint, rooted, still};
+use super::motion_file::{FileMotion, Turned, joint_name, no_joint, rooted, still};
 use super::skeleton::unknown_joint;
 use crate::geometry::number::single;
 use crate::import::ImportError;
@@ -85,12 +85,12 @@ impl Builder<'_> {
         None
     }
 
-    /// The motion of a file: how long it lasts, and its tracks.
+    /// The motion of a file.
     pub(super) fn md5_motion(
         &mut self,
         clip: &spec::Clip,
         import: &Sp<spec::MotionImport>,
-    ) -> Option<(f64, Vec<ClipTrack>)> {
+    ) -> Option<FileMotion> {
         let bytes = self.bytes_of(&import.file)?;
         let read =
             animation::read(&bytes).map_err(|fault| self.refused(&import.file, &ImportError::from(fault)));
@@ -141,7 +141,7 @@ impl Builder<'_> {
             let (space, clamp) = (Space::Rest, None);
             tracks.extend(courses.into_iter().map(|course| ClipTrack { target, course, space, clamp }));
         }
-        Some((times[times.len() - 1], tracks))
+        Some(FileMotion { lasting: times[times.len() - 1], tracks, properties: Vec::new() })
     }
 
     /// How a joint moves. With F the frame of the document's joint, Q and P the file's rotations of it and of its parent

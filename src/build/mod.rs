@@ -20,6 +20,7 @@ mod displace;
 mod dxf;
 mod extrude;
 mod field;
+mod file_state;
 mod formula;
 mod formula_curve;
 mod frames;
@@ -177,6 +178,7 @@ struct Builder<'a> {
     shapes: IndexMap<String, Option<ShapeHandle>>,
     materials: IndexMap<String, Option<MaterialHandle>>,
     images: IndexMap<String, Option<ImageHandle>>,
+    from_files: file_state::FromFiles,
     curves: IndexMap<String, Option<Vec<AnyCurve>>>,
     maps: IndexMap<String, Option<Arc<GridField>>>,
     fields: IndexMap<String, Option<AnyField>>,
@@ -227,6 +229,7 @@ impl<'a> Builder<'a> {
             shapes: IndexMap::new(),
             materials: IndexMap::new(),
             images: IndexMap::new(),
+            from_files: file_state::FromFiles::default(),
             curves: IndexMap::new(),
             maps: IndexMap::new(),
             fields: IndexMap::new(),

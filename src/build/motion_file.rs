@@ -10,7 +10,7 @@ use crate::import::bvh::{self, Bvh, BvhJoint, Channel};
 use crate::language::diagnostic::{Code, Diagnostic};
 use crate::language::source::Span;
 use crate::language::spec::{self, FilePath, Sp, Up, closest, kebab};
-use crate::model::{ClipTrack, Space, Target};
+use crate::model::{ClipTrack, PropertyTrack, Space, Target};
 use crate::motion::{Axis, Course, Interpolation, Keys, Law, Skeleton, about};
 
 /// The most numbers of a motion that is read into a clip.
@@ -23,6 +23,17 @@ const ROOT: &str = "root";
 pub(super) struct Turned {
     pub(super) axes: DMat3,
     pub(super) scale: f64,
+}
+
+/// The motion of a file.
+#[derive(Default)]
+pub(super) struct FileMotion {
+    /// Seconds.
+    pub(super) lasting: f64,
+    /// What moves.
+    pub(super) tracks: Vec<ClipTrack>,
+    /// What else changes.
+    pub(super) properties: Vec<PropertyTrack>,
 }
 
 impl Builder<'_> {
@@ -59,12 +70,12 @@ impl Builder<'_> {
         Some(joints.iter().enumerate().map(draft).collect())
     }
 
-    /// The motion of a file: how long it lasts, and its tracks.
+    /// The motion of a file.
     pub(super) fn imported_motion(
         &mut self,
         clip: &spec::Clip,
         import: &Sp<spec::MotionImport>,
-    ) -> Option<(f64, Vec<ClipTrack>)> {
+    ) -> Option<FileMotion> {
         match import.file.value.extension().as_str() {
             "md5anim" => return self.md5_motion(clip, import),
             "glb" | "gltf" => return self.gltf_motion(clip, import),
@@ -102,7 +113,7 @@ impl Builder<'_> {
                 clamp: None,
             }));
         }
-        Some((times[times.len() - 1], tracks))
+        Some(FileMotion { lasting: times[times.len() - 1], tracks, properties: Vec::new() })
     }
 
     /// How a joint moves: its frames at rest stand along the axes of the file, ours along the bone.

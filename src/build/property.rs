@@ -16,9 +16,14 @@ use crate::motion::{Course, Path, Property, Track};
 const ROUNDING: f64 = 1e-9;
 
 impl Builder<'_> {
-    /// The tracks of a clip's properties; none where one of them is wrong.
-    pub(super) fn properties(&mut self, clip: &spec::Clip, duration: f64) -> Option<Vec<PropertyTrack>> {
-        let mut made: Vec<(PropertyTrack, Span)> = Vec::new();
+    /// The tracks of a clip's properties, after those of a file; none where one of them is wrong.
+    pub(super) fn properties(
+        &mut self,
+        clip: &spec::Clip,
+        imported: Vec<(PropertyTrack, Span)>,
+        duration: f64,
+    ) -> Option<Vec<PropertyTrack>> {
+        let mut made = imported;
         let mut good = true;
         for track in clip.track.iter().filter(|track| is_property(track)) {
             let Some(one) = self.property(clip, track, duration) else {
@@ -112,6 +117,15 @@ impl Builder<'_> {
         let drawn = self.model.normal_maps.iter();
         let made = drawn.filter(|map| self.model.shape(map.shape).options.material == Some(handle));
         Owner::Material(std::iter::once(handle).chain(made.map(|map| map.material)).collect())
+    }
+
+    /// As `wearing`, of several materials.
+    pub(super) fn wearing_all(&self, handles: &[MaterialHandle]) -> Owner {
+        let all = handles.iter().flat_map(|handle| match self.wearing(*handle) {
+            Owner::Material(all) => all,
+            Owner::Node(_) => Vec::new(),
+        });
+        Owner::Material(all.collect())
     }
 
     fn of_material(&mut self, handle: MaterialHandle, path: &Sp<MotionPath>) -> Option<Property> {

@@ -1,6 +1,7 @@
 //! The meshes of a file as one mesh of triangles, where its nodes place them.
 
 use glam::{DAffine3, DMat4, DVec2, DVec3, Vec3};
+use serde_json::Value;
 
 use super::look::{self, Mapping};
 use super::{GltfFault, GltfFile, Node, Part, Skin, open};
@@ -9,7 +10,7 @@ use crate::geometry::mesh::weld::weld_equal;
 use crate::geometry::mesh::{Color, NormalMap, PointIndex, PolygonMesh, index};
 use crate::import::{ImportError, ImportOptions, Imported, MaterialLook, Note};
 
-/// Reads a file: the triangles of the scene that is shown, in its space, states by their weights at rest, skinned meshes as
+/// Reads a file: the triangles of the scene that is shown, in its space, states as much as they count at rest, skinned meshes as
 /// they are bound, where their first joint at rest brings them. Points are joined where they are equal, or within `weld`. Lines and points are left
 /// out with a note.
 ///
@@ -32,9 +33,52 @@ pub struct Weighted {
     pub imported: Imported,
     /// For each point of the mesh the nodes that carry it, joints of its skin, and their shares; none where no skin does.
     pub weights: Vec<Vec<(usize, f64)>>,
+    /// The states of the meshes of all nodes.
+    pub states: Vec<FileState>,
+    /// Points and normals of the mesh where all states count nothing.
+    plain: (Vec<DVec3>, Vec<DVec3>),
 }
 
-/// As [`read`], with weights. Points on one place with other weights stay apart; where points within `weld` are joined,
+/// A morph target of the mesh of a node.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FileState {
+    /// The node.
+    pub node: usize,
+    /// Its number among those of the node's mesh.
+    pub target: usize,
+    /// Its name in the file (`targetNames`), may be empty.
+    pub name: String,
+    /// What it counts at rest.
+    pub weight: f64,
+    /// For each point of the mesh the way that it goes.
+    ways: Vec<DVec3>,
+    /// For each normal what is added.
+    turns: Vec<DVec3>,
+}
+
+impl Weighted {
+    /// The mesh where states count so much, in their order.
+    #[must_use]
+    pub fn at(&self, weights: &[f64]) -> PolygonMesh {
+        let (points, normals) = self.plain.clone();
+        let mut mesh = PolygonMesh { points, normals, ..self.imported.mesh.clone() };
+        let mut turned = false;
+        for (state, weight) in self.states.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+            mesh.points.iter_mut().zip(&state.ways).for_each(|(point, way)| *point += *way * *weight);
+            mesh.normals.iter_mut().zip(&state.turns).for_each(|(normal, turn)| *normal += *turn * *weight);
+            turned = true;
+        }
+        if turned {
+            mesh.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
+        }
+        mesh
+    }
+}
+
+/// Places of points in all states of a file.
+const MOST_PLACES: usize = 1 << 26;
+
+/// As [`read`], with weights and states. Points on one place with other weights, or that go other ways in states, stay apart; where points within `weld` are joined,
 /// weights are left out.
 ///
 /// # Errors
@@ -50,13 +94,13 @@ pub fn read_weighted(
     check_size(&file, &nodes, &shown, options.most)?;
     let worlds = file.worlds();
     let data = file.data();
-    let mut found = Found { mesh: PolygonMesh::default(), weights: Vec::new(), lines: 0 };
+    let mut found = Found::default();
     let mut notes = Vec::new();
     let (materials, mappings) = look::read(&data, &mut notes);
     found.mesh.materials = materials.iter().map(|look| look.name.clone()).collect();
     for node in shown {
         let Some(mesh) = nodes[node].mesh.and_then(|mesh| file.document.meshes().nth(mesh)) else { continue };
-        let index = mesh.index();
+        let (index, names) = (mesh.index(), target_names(&mesh));
         let mesh = super::mesh(&data, &mesh, &mut notes)?;
         let skin = nodes[node].skin.and_then(|skin| file.document.skins().nth(skin));
         let skin = skin.map(|skin| super::skin(&data, &skin)).transpose()?;
@@ -64,8 +108,14 @@ pub fn read_weighted(
         let weights = if nodes[node].weights.is_empty() { &mesh.weights } else { &nodes[node].weights };
         for part in &mesh.parts {
             let mapping = part.material.and_then(|material| mappings.get(material));
-            found.part(&morphed(part, weights), &map, mapping);
+            let before = (found.mesh.points.len(), found.mesh.normals.len());
+            found.part(part, &map, mapping);
+            found.states_of(part, &map, before, &Morphs { node, names: &names, weights });
             found.carry(part, skin.as_ref(), index)?;
+            if found.states.len().saturating_mul(found.mesh.points.len()) > MOST_PLACES {
+                let limit = u32::try_from(MOST_PLACES).unwrap_or(u32::MAX);
+                return Err(ImportError::TooMany { what: "places of points in its states", limit });
+            }
         }
     }
     finish(&file, found, (materials, notes), options)
@@ -78,8 +128,9 @@ fn finish(
     options: &ImportOptions,
 ) -> Result<Weighted, ImportError> {
     let mut found = found;
+    let count = found.states.len();
     found.weld(options.weld);
-    let Found { mut mesh, weights, lines } = found;
+    let Found { mut mesh, weights, lines, states } = found;
     if mesh.faces.is_empty() {
         return Err(match &options.group {
             Some(group) => ImportError::EmptyGroup { group: group.clone() },
@@ -100,7 +151,15 @@ fn finish(
     if lines > 0 {
         note(format!("{lines} lines are left out"));
     }
-    Ok(Weighted { imported: Imported { mesh, materials, groups: names(file), notes }, weights })
+    if options.weld.is_some() && count > 0 {
+        note(format!("its {count} states are left out, since `weld` joins points that may part in them"));
+    }
+    let plain = (mesh.points.clone(), mesh.normals.clone());
+    let imported = Imported { mesh, materials, groups: names(file), notes };
+    let mut found = Weighted { imported, weights, states, plain };
+    let rest: Vec<f64> = found.states.iter().map(|state| state.weight).collect();
+    found.imported.mesh = found.at(&rest);
+    Ok(found)
 }
 
 /// Nodes whose meshes are read, in the order of the tree.
@@ -171,21 +230,19 @@ fn check_size(file: &GltfFile, nodes: &[Node], shown: &[usize], most: u64) -> Re
     Ok(())
 }
 
-/// A part with its states added as much as they count.
-fn morphed(part: &Part, weights: &[f64]) -> Part {
-    let mut part = part.clone();
-    for (target, weight) in part.targets.clone().iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
-        let add = |values: &mut [[f32; 3]], changes: &[[f32; 3]]| {
-            for (value, change) in values.iter_mut().zip(changes) {
-                let sum =
-                    Vec3::from_array(*value).as_dvec3() + Vec3::from_array(*change).as_dvec3() * *weight;
-                *value = sum.as_vec3().to_array();
-            }
-        };
-        add(&mut part.positions, &target.positions);
-        add(&mut part.normals, &target.normals);
-    }
-    part
+/// Names of the targets of a mesh, by custom in its `extras`.
+fn target_names(mesh: &gltf::Mesh<'_>) -> Vec<String> {
+    let extras = mesh.extras().as_ref().and_then(|extras| serde_json::from_str::<Value>(extras.get()).ok());
+    let names = extras.as_ref().and_then(|extras| extras.get("targetNames")?.as_array());
+    let name = |name: &Value| name.as_str().unwrap_or_default().to_owned();
+    names.map_or_else(Vec::new, |names| names.iter().map(name).collect())
+}
+
+/// The states of the mesh of a node.
+struct Morphs<'a> {
+    node: usize,
+    names: &'a [String],
+    weights: &'a [f64],
 }
 
 /// Where a skin's mesh stands in the scene as it is bound: where its first joint, at rest, brings it.
@@ -199,11 +256,13 @@ pub(super) fn affine(matrix: &DMat4) -> DAffine3 {
 }
 
 /// What is read.
+#[derive(Default)]
 struct Found {
     mesh: PolygonMesh,
     /// For each point the nodes that carry it.
     weights: Vec<Vec<(usize, f64)>>,
     lines: usize,
+    states: Vec<FileState>,
 }
 
 impl Found {
@@ -268,6 +327,48 @@ impl Found {
         }
     }
 
+    /// The states of a part, whose points and normals were added after so many.
+    fn states_of(
+        &mut self,
+        part: &Part,
+        map: &DAffine3,
+        (points, normals): (usize, usize),
+        own: &Morphs<'_>,
+    ) {
+        if part.triangles.is_empty() {
+            return;
+        }
+        let turned = NormalMap::new(&map.matrix3);
+        for (target, moved) in part.targets.iter().enumerate() {
+            let known = self.states.iter().position(|state| (state.node, state.target) == (own.node, target));
+            let known = known.unwrap_or_else(|| {
+                self.states.push(FileState {
+                    node: own.node,
+                    target,
+                    name: own.names.get(target).cloned().unwrap_or_default(),
+                    weight: own.weights.get(target).copied().unwrap_or(0.0),
+                    ..FileState::default()
+                });
+                self.states.len() - 1
+            });
+            let state = &mut self.states[known];
+            state.ways.resize(points, DVec3::ZERO);
+            state
+                .ways
+                .extend(moved.positions.iter().map(|way| map.matrix3 * Vec3::from_array(*way).as_dvec3()));
+            if moved.normals.len() == part.normals.len() {
+                state.turns.resize(normals, DVec3::ZERO);
+                // A normal has length 1 once it is turned, and what is added to it is as much shorter or longer.
+                state.turns.extend(part.normals.iter().zip(&moved.normals).map(|(normal, turn)| {
+                    let normal = Vec3::from_array(*normal).as_dvec3();
+                    let length = turned.apply(normal).length();
+                    let turn = turned.apply(Vec3::from_array(*turn).as_dvec3());
+                    if length > 0.0 { turn / length } else { DVec3::ZERO }
+                }));
+            }
+        }
+    }
+
     /// The joints that carry the points of a part, which were added last.
     fn carry(&mut self, part: &Part, skin: Option<&Skin>, mesh: usize) -> Result<(), GltfFault> {
         let Some(skin) = skin.filter(|_| part.joints.len() == part.shares.len()) else {
@@ -295,7 +396,20 @@ impl Found {
 
     /// Joins points.
     fn weld(&mut self, within: Option<f64>) {
+        for state in &mut self.states {
+            state.ways.resize(self.mesh.points.len(), DVec3::ZERO);
+            state.turns.resize(self.mesh.normals.len(), DVec3::ZERO);
+        }
         if let Some(within) = within {
+            // What counts at rest stays as it is.
+            let states = std::mem::take(&mut self.states);
+            for state in states.iter().filter(|state| state.weight != 0.0) {
+                self.mesh
+                    .points
+                    .iter_mut()
+                    .zip(&state.ways)
+                    .for_each(|(point, way)| *point += *way * state.weight);
+            }
             self.weights.clear();
             self.mesh.weld(within);
             return;
@@ -305,12 +419,20 @@ impl Found {
         let mut kept: Vec<Vec<u32>> = vec![Vec::new(); welded.points.len()];
         let (mut points, mut weights): (Vec<DVec3>, Vec<Vec<(usize, f64)>>) = (Vec::new(), Vec::new());
         let mut map = Vec::with_capacity(self.mesh.points.len());
-        for (own, place) in self.weights.drain(..).zip(&welded.map) {
+        // For each point that stays the one that it was.
+        let mut before: Vec<usize> = Vec::new();
+        for (old, (own, place)) in self.weights.drain(..).zip(&welded.map).enumerate() {
             let here = &mut kept[*place as usize];
-            let alike = here.iter().copied().find(|point| weights[*point as usize] == own);
+            let together =
+                |other: usize| self.states.iter().all(|state| state.ways[other] == state.ways[old]);
+            let alike = here
+                .iter()
+                .copied()
+                .find(|point| weights[*point as usize] == own && together(before[*point as usize]));
             map.push(alike.unwrap_or_else(|| {
                 let new = index(points.len());
                 here.push(new);
+                before.push(old);
                 points.push(welded.points[*place as usize]);
                 weights.push(own);
                 new
@@ -318,6 +440,9 @@ impl Found {
         }
         for corner in &mut self.mesh.corners {
             *corner = PointIndex(map[corner.subscript()]);
+        }
+        for state in &mut self.states {
+            state.ways = before.iter().map(|old| state.ways[*old]).collect();
         }
         (self.mesh.points, self.weights) = (points, weights);
     }

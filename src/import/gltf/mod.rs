@@ -22,7 +22,7 @@ use thiserror::Error;
 
 pub(crate) use accessor::{Data, little, number, size};
 pub use clip::{Channel, ChannelPath, Clip, PropertyChannel, Steps, Track};
-pub use geometry::{Weighted, read, read_weighted};
+pub use geometry::{FileState, Weighted, read, read_weighted};
 pub(crate) use mesh::read as mesh;
 pub use mesh::{Mesh, Part, Target};
 pub use rig::{Rig, RigJoint};

@@ -157,6 +157,47 @@ fn materials_bring_their_pictures() {
     assert!(told("emissive picture of material `red` is left out: it goes on in another way"));
 }
 
+/// Points that part in a state stay apart; a state moves only what its node shows, as its node lies.
+#[test]
+fn states_move_what_their_nodes_show() {
+    let with = |weld: Option<f64>, weights: Value| {
+        let bytes = document(|document| {
+            // All four points at one place, moved to the square's.
+            document["accessors"].as_array_mut().expect("a list").push(json!({
+                "componentType": 5126, "type": "VEC3", "count": 4, "min": [0, 0, 0], "max": [0, 0, 0],
+                "sparse": { "count": 1, "indices": { "bufferView": 1, "componentType": 5121 }, "values": { "bufferView": 0 } },
+            }));
+            let mesh = &mut document["meshes"][0];
+            let other = mesh["primitives"][0].clone();
+            mesh["primitives"][0]["attributes"]["POSITION"] = 2.into();
+            mesh["primitives"][0]["targets"] = json!([{ "POSITION": 0 }]);
+            mesh["extras"] = json!({ "targetNames": ["Grown Up"] });
+            mesh["weights"] = weights;
+            document["meshes"].as_array_mut().expect("a list").push(json!({ "primitives": [other] }));
+            document["nodes"][2]["mesh"] = 1.into();
+        });
+        let options = ImportOptions { weld, ..ImportOptions::default() };
+        read_weighted(&bytes, &options, &mut |path| (path == "a square.bin").then(square)).expect("squares")
+    };
+    let found = with(None, json!([0]));
+    let state = &found.states[0];
+    assert_eq!((found.states.len(), state.node, state.target, state.weight), (1, 1, 0, 0.0));
+    assert_eq!(state.name, "Grown Up");
+    let plain = found.at(&[0.0]);
+    assert_eq!((plain.points.len(), &plain), (8, &found.imported.mesh));
+    let half = found.at(&[0.5]).bounds();
+    // The hand is moved by 5 along z; the twin beside it stays.
+    assert_eq!((half.min, half.max), (DVec3::new(-2.0, 0.0, 0.0), DVec3::new(1.0, 1.0, 5.0)));
+    // What counts at rest is in the mesh as it is read, and not in the one without states.
+    let grown = with(None, json!([0.5]));
+    assert_eq!((grown.states[0].weight, &grown.imported.mesh), (0.5, &found.at(&[0.5])));
+    assert_eq!(grown.at(&[0.0]), plain);
+    // Joined, points go where they rest.
+    let welded = with(Some(0.001), json!([0.5]));
+    assert_eq!((welded.states.len(), welded.imported.mesh.points.len()), (0, 8));
+    assert!(welded.imported.notes.iter().any(|note| note.message.contains("its 1 states are left out")));
+}
+
 #[test]
 fn groups_are_nodes_with_what_is_below_and_meshes() {
     let of = |group: &str| {

@@ -44,7 +44,7 @@ table! {
         limits: Sp<LimitRule> = LimitRule::Error;
         /// What moves, as `[[clip.NAME.track]]`.
         track: Vec<Sp<ClipTrack>> = Vec::new();
-        /// The motion of a file, as `[clip.NAME.import]`: tracks for all of its joints.
+        /// The motion of a file, as `[clip.NAME.import]`: tracks for all of its joints, and of glTF for states and materials.
         import: Option<Sp<MotionImport>>;
         /// What joints reach by turning those before them, as `[[clip.NAME.reach]]`.
         reach: Vec<Sp<Reach>> = Vec::new();
@@ -56,7 +56,8 @@ table! {
 table! {
     /// The motion of a BVH file, for a skeleton whose joints have the names of the file's in kebab-case and stand at rest as
     /// they do there; that of an MD5 motion (`.md5anim`), for a skeleton from an MD5 mesh of the same joints; or an animation of
-    /// a glTF file, for a skeleton of joints of the same names.
+    /// a glTF file, for a skeleton of joints of the same names, for the states of shapes that are imported from the same file, and
+    /// for their materials. What of an animation nothing here has is left out with a warning that names it.
     "motion import" pub MotionImport {
         /// The file; the path is relative to this document and stays inside the project.
         file: Sp<FilePath>;

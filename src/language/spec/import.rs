@@ -34,6 +34,9 @@ table! {
     /// Materials of files bring their colors and pictures: those of a glTF file stand in it or beside it, and what OBJ (by its
     /// material library), PLY, 3DS, MD2, MD3 and MD5 files name is looked for beside the file, as PNG or JPEG, whatever
     /// ending and letters' case the file writes. A missing one is a warning. `materials` gives others.
+    ///
+    /// Morph targets of a glTF file become morphs of the shape where a node shows it, with their names (by custom in
+    /// `targetNames`) in kebab-case and their weights; `[clip.NAME.import]` plays their weights.
     "import" pub Import {
         /// The file; the path is relative to this document and stays inside the project.
         file: Sp<FilePath>;
@@ -44,13 +47,13 @@ table! {
         scale: Sp<f64> = 1.0 => Check::above(0.0);
         /// Which axis of the file points up: `"y"` when it is not written, for STL, DXF, 3DS, MD2, MD3 and MD5 `"z"`.
         up: Option<Sp<Up>>;
-        /// Points nearer than this, in the file's unit, are made one.
+        /// Points nearer than this, in the file's unit, are made one; morph targets of a glTF file are left out then.
         weld: Option<Sp<f64>> => Check::at_least(0.0);
         /// For each material of the file the name of one of this document.
         materials: IndexMap<String, Sp<MaterialName>> = IndexMap::new();
         /// The frame of an MD2 or MD3 file that is the shape, by its name in the file; the first when it is not written.
         frame: Option<Sp<String>>;
-        /// Which frames of an MD2 or MD3 file are read.
+        /// Which frames of an MD2 or MD3 file, or morph targets of a glTF file, are read.
         frames: Sp<Frames> = Frames::All;
         /// How the sequences of an MD2 or MD3 file are told.
         sequences: Sp<Sequences> = Sequences::Named;
@@ -64,9 +67,9 @@ table! {
 choices! {
     /// Which frames of a file are read.
     Frames {
-        /// All: those that are not the shape are morphs of it, and sequences are clips.
+        /// All: those that are not the shape are morphs of it, and sequences are clips; of glTF all targets.
         All = "all";
-        /// The one that is the shape.
+        /// The one that is the shape; of glTF the shape as it is with the weights of the file.
         One = "one";
     }
 }
