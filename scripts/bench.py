@@ -3,10 +3,12 @@
 
     scripts/bench.py                  vase, sweep and loft on a fixed grid, the vase within 0.1 mm, peak memory,
                                       evaluation of curves, the teapot, a face at equal deviation, evaluation
-                                      of surfaces, height maps, booleans, weights by heat, growth,
-                                      a thousand documents, glTF files made small, every spec of the gallery
+                                      of surfaces, height maps, booleans, weights by heat, inverse
+                                      kinematics, keys of clips, growth, growth of motion, a thousand
+                                      documents, glTF files made small, every spec of the gallery
     scripts/bench.py --only vase      one part: vase, sweep, loft, tolerance, memory, curves, teapot, face,
-                                      surfaces, heights, booleans, weights, growth, farm, packing or gallery
+                                      surfaces, heights, booleans, weights, reach, keys, growth, motion, farm,
+                                      packing, authoring or gallery
     scripts/bench.py --large          memory up to an output of 1 GB
     scripts/bench.py --json FILE      the figures as JSON too
     scripts/bench.py --plot FILE      growth as a picture
@@ -31,6 +33,7 @@ from pathlib import Path
 from typing import Any
 
 from peers import (
+    animation,
     authoring,
     booleans,
     evaluation,
@@ -65,7 +68,10 @@ PARTS = (
     "heights",
     "booleans",
     "weights",
+    "reach",
+    "keys",
     "growth",
+    "motion",
     "farm",
     "packing",
     "authoring",
@@ -140,9 +146,20 @@ def measure(part: str, folder: Path, options: argparse.Namespace) -> Part:
     if part == "weights":
         peer = [str(PYTHON), str(ROOT / "tests" / "crosscheck" / "blender_weights.py")]
         return motion.measure(KILN, peer, folder, options.runs, tell)
+    if part in ("reach", "keys", "motion"):
+        return of_clips(part, folder, options.runs)
     if part in ("growth", "farm", "packing", "authoring", "gallery"):
         return of_files(part, folder, options.runs)
     return tolerance(folder) if part == "tolerance" else grid(part, folder, options.runs)
+
+
+def of_clips(part: str, folder: Path, runs: int) -> Part:
+    """Inverse kinematics, keys and growth of motion."""
+    if part == "reach":
+        return animation.reach(KILN, [str(PYTHON), str(PEERS / "peer_ik.py")], folder, runs, tell)
+    if part == "keys":
+        return animation.keys(KILN, PEERS / "node_modules" / ".bin" / "gltfpack", folder, tell)
+    return animation.growth(KILN, folder, runs, tell)
 
 
 def of_files(part: str, folder: Path, runs: int) -> Part:
@@ -307,7 +324,10 @@ def tables(figures: dict[str, Any]) -> str:
         "heights": heights_table,
         "booleans": booleans_table,
         "weights": weights_table,
+        "reach": reach_table,
+        "keys": keys_table,
         "growth": growth_table,
+        "motion": motion_table,
         "farm": farm_table,
         "packing": packing_table,
         "authoring": authoring_table,
@@ -465,6 +485,76 @@ def weights_table(rows: list[dict[str, Any]]) -> str:
         [row["tool"], thousandths(row["seconds"]), thousandths(row["weights"]), ratio(row.get("of-blender"))]
         if row["failure"] is None
         else [row["tool"], "failed", "-", "-"]
+        for row in rows
+    ]
+    return markdown(head, body)
+
+
+def reach_table(rows: list[dict[str, Any]]) -> str:
+    """Inverse kinematics by both tools."""
+    head = [
+        "7 joints with limits, 60 s at 60 frames a second",
+        "ms, whole process",
+        "solves a second",
+        "furthest from its place, mm",
+        "times Blender's",
+    ]
+    body = [
+        [
+            row["tool"],
+            thousandths(row["seconds"]),
+            count(row["solves"]),
+            thousandths(row["furthest"]),
+            ratio(row.get("times-blender")),
+        ]
+        if row["failure"] is None
+        else [row["tool"], "failed", *["-"] * 3]
+        for row in rows
+    ]
+    return markdown(head, body)
+
+
+def keys_table(rows: list[dict[str, Any]]) -> str:
+    """Keys at the same measured error of skinned vertices."""
+    head = [
+        "clips of",
+        "keys",
+        "gltfpack, resampled",
+        "furthest vertex",
+        "Kiln",
+        "furthest vertex",
+        "of gltfpack's",
+    ]
+    body = [
+        [
+            row["file"],
+            count(row["source"]),
+            count(row["gltfpack"]),
+            f"{row['gltfpack-error']:.3g}",
+            count(row["kiln"]),
+            f"{row['kiln-error']:.3g}",
+            ratio(row["of-gltfpack"]),
+        ]
+        if row["failure"] is None
+        else [row["file"], "failed", *["-"] * 5]
+        for row in rows
+    ]
+    return markdown(head, body)
+
+
+def motion_table(rows: list[dict[str, Any]]) -> str:
+    """A swaying tube from small to large."""
+    head = ["a skinned tube sways", "", "ms", "peak MB", "exponent of the last step"]
+    body = [
+        [
+            row["axis"],
+            count(row["size"]),
+            thousandths(row["seconds"]),
+            millions(row["peak"]),
+            f"{row['exponent']:.2f}" if "exponent" in row else "",
+        ]
+        if row["failure"] is None
+        else [row["axis"], count(row["size"]), "failed", "-", "-"]
         for row in rows
     ]
     return markdown(head, body)
