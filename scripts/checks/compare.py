@@ -23,6 +23,7 @@ Facts = dict[str, Any]
 # areas; Blender stores single precision and computes areas and volumes in it.
 PRECISION = {"written": 1e-9, "trimesh": 1e-9, "meshlab": 1e-6, "blender": 1e-5, "three": 1e-6}
 # Coordinates are written in single precision and only ever copied or turned by a node's matrix.
+ANGLE = 1e-3  # degrees
 COORDINATE = 1e-6
 
 # Tools that play clips, and how far their poses may be from the report's, in sizes of the model.
@@ -263,6 +264,7 @@ def clips(asset: str, report: Facts, one: Measured) -> Iterator[Finding]:
     for name, clip in report.get("clips", {}).items():
         if one.tool == "written":
             yield from reaches(asset, (name, clip), one)
+            yield from drivers(asset, (name, clip), one)
         box = clip["bounds"]
         size = math.dist(box["min"], box["max"])
         allowed = POSED * size + (2.0 * clip["bound"] if one.tool == "blender" else 0.0)
@@ -297,6 +299,20 @@ def reaches(asset: str, named: tuple[str, Facts], one: Measured) -> Iterator[Fin
         yield Finding(
             asset, f"{place}.worst", one.tool, task["worst"], worst, differs(task["worst"], worst), COORDINATE
         )
+
+
+def drivers(asset: str, named: tuple[str, Facts], one: Measured) -> Iterator[Finding]:
+    """How weights follow the angles of the joints that drive them."""
+    name, clip = named
+    for of, task in clip.get("drivers", {}).items():
+        place, found = f"clips.{name}.drivers.{of}", one.drivers.get(name, {}).get(of, {})
+        for fact, allowed in (("angle", ANGLE), ("weight", COORDINATE)):
+            told, seen = [frame[fact] for frame in task["frames"]], found.get(f"{fact}s")
+            yield Finding(asset, f"{place}.{fact}", one.tool, told, seen, differs(told, seen), allowed)
+        # An angle that is off by so much moves the weight by its part of the way.
+        allowed = COORDINATE + ANGLE / abs(task["to"] - task["from"])
+        told, seen = task["worst"], found.get("worst")
+        yield Finding(asset, f"{place}.worst", one.tool, told, seen, differs(told, seen), allowed)
 
 
 def levels(asset: str, report: Facts, one: Measured) -> Iterator[Finding]:

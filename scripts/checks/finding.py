@@ -23,9 +23,9 @@ class Measured:
 
     `totals` are facts of the whole file, `shapes` those of each glTF mesh by its name, in the mesh's own
     coordinates, `nodes` world matrices by node name, column by column, `clips` the poses of each clip at the
-    times that the report names, `reaches` for each clip and joint the distances from its targets, frame by frame.
-    `error` says why the tool could not
-    measure; then nothing else is set.
+    times that the report names, `reaches` for each clip and joint the distances from its targets, frame by frame,
+    `drivers` for each clip and weight that follows a joint its angles and weights. `error` says why the tool could
+    not measure; then nothing else is set.
     """
 
     tool: str
@@ -36,6 +36,7 @@ class Measured:
     nodes: dict[str, list[float]] = field(default_factory=dict)
     clips: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
     reaches: dict[str, dict[str, list[float]]] = field(default_factory=dict)
+    drivers: dict[str, dict[str, dict[str, Any]]] = field(default_factory=dict)
     error: str | None = None
 
 

@@ -6,6 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from checks.document import Document, local_matrix
 
@@ -44,6 +45,19 @@ def reaches(path: Path) -> dict[str, dict[str, list[float]]]:
     named = {one.get("name", ""): one for one in stage.document.json.get("animations", [])}
     return {
         name: {joint: stage.distances(named[name], joint, task) for joint, task in clip["reaches"].items()}
+        for name, clip in questions.items()
+    }
+
+
+def drivers(path: Path) -> dict[str, dict[str, dict[str, Any]]]:
+    """For each clip and weight that follows a joint the angles and weights at the times told, and how far it is off."""
+    questions = {name: clip for name, clip in asked(path).items() if clip.get("drivers")}
+    if not questions:
+        return {}
+    stage = Stage(Document(path))
+    named = {one.get("name", ""): one for one in stage.document.json.get("animations", [])}
+    return {
+        name: {of: stage.driven(named[name], task, clip["duration"]) for of, task in clip["drivers"].items()}
         for name, clip in questions.items()
     }
 
@@ -107,6 +121,38 @@ class Stage:
             place = matrix @ np.array([*task["point"], 1.0])
             found.append(float(np.linalg.norm(place[:3] - frame["target"])))
         return found
+
+    def driven(self, animation: dict[str, Any], task: dict[str, Any], duration: float) -> dict[str, Any]:
+        """A weight beside the angle of the joint that drives it."""
+        joint, shows = self.names[task["joint"]], self.names[task["node"]]
+        rest = Rotation.from_quat(self.nodes[joint].get("rotation", [0, 0, 0, 1]))
+        samplers = {
+            (one["target"].get("node"), one["target"]["path"]): animation["samplers"][one["sampler"]]
+            for one in animation["channels"]
+        }
+
+        def angle(time: float) -> float:
+            turning = samplers.get((joint, "rotation"))
+            if turning is None:
+                return 0.0
+            turned = rest.inv() * Rotation.from_quat(self.sample(turning, "rotation", time))
+            # Limits are those of the swing about x, then about z, then of the twist about the bone.
+            return float(turned.as_euler("XZY", degrees=True)["xzy".index(task["axis"])])
+
+        def weight(time: float) -> float:
+            moving = samplers.get((shows, "weights"))
+            weights = self.rest_weights(self.nodes[shows]) if moving is None else self.sample(moving, "weights", time)
+            return float(weights[task["target"]])
+
+        def wanted(time: float) -> float:
+            return float(np.clip((angle(time) - task["from"]) / (task["to"] - task["from"]), 0.0, 1.0))
+
+        told = [frame["time"] for frame in task["frames"]]
+        return {
+            "angles": [angle(time) for time in told],
+            "weights": [weight(time) for time in told],
+            "worst": max(abs(weight(time) - wanted(time)) for time in np.linspace(0.0, duration, 65)),
+        }
 
     def world(self, index: int, locals_: list[dict[str, Any]]) -> NDArray[np.float64]:
         """A node's matrix in the scene."""

@@ -44,8 +44,8 @@ def measure(path: Path) -> finding.Measured:
     nodes = {name: world.T.ravel().tolist() for name, world in document.worlds.items()}
     totals["weight-faults"] = played.weight_faults(document)
     clips = played.clips(path)
-    reaches = played.reaches(path)
-    return finding.Measured(TOOL, version("numpy"), str(path), totals, shapes, nodes, clips, reaches)
+    reaches, drivers = played.reaches(path), played.drivers(path)
+    return finding.Measured(TOOL, version("numpy"), str(path), totals, shapes, nodes, clips, reaches, drivers)
 
 
 def count(document: Document) -> dict[str, Any]:

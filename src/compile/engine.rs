@@ -123,9 +123,11 @@ fn mistaken_by_babylon(clip: &Definition<Clip>) -> Option<Diagnostic> {
         _ => "plays changes of `metallic` as changes of roughness",
     };
     let report = Diagnostic::warning(Code::EngineProperties, format!("Babylon.js {how}"));
-    Some(report.at(path.span, "this change").help(
-        "change it in the game, or change `color`, `emissive` or a property of clearcoat in its place",
-    ))
+    Some(
+        report.at(path.span, "this change").help(
+            "change it in the game, or change `color`, `emissive` or a property of clearcoat in its place",
+        ),
+    )
 }
 
 /// Whether the loader of an engine plays changes of properties.

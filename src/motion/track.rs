@@ -95,10 +95,16 @@ pub struct Ramp {
 }
 
 impl Ramp {
+    /// The angle of a rotation of a joint, degrees.
+    #[must_use]
+    pub fn angle(&self, rotation: DQuat) -> f64 {
+        to_angles(rotation)[self.axis as usize]
+    }
+
     /// The weight at a rotation of a joint.
     #[must_use]
     pub fn weight(&self, rotation: DQuat) -> f64 {
-        let angle = to_angles(rotation)[self.axis as usize];
+        let angle = self.angle(rotation);
         ((angle - self.from) / (self.to - self.from)).clamp(0.0, 1.0)
     }
 }

@@ -27,7 +27,9 @@ pub use joints::JointFacts;
 pub use levels::{LevelFacts, LevelOrigin};
 pub use lightmaps::LightmapFacts;
 pub use morphs::MorphFacts;
-pub use motion::{ClipFacts, PoseFacts, PosedVertex, ReachFacts, ReachFrame, SkinFacts};
+pub use motion::{
+    ClipFacts, DriverFacts, DriverFrame, PoseFacts, PosedVertex, ReachFacts, ReachFrame, SkinFacts,
+};
 pub use perturbed::PerturbedFacts;
 pub use quadrics::QuadricFacts;
 pub use surfaces::{NetworkFacts, NetworkJoint, NetworkLine};

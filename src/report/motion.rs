@@ -3,9 +3,13 @@
 //! Rotations are interpolated on the sphere, as the format demands; everything else in doubles from the written single
 //! precision. The poses are for other players to be held against.
 
+mod drivers;
+
 use glam::{DMat4, DQuat, DVec3, DVec4};
 use indexmap::IndexMap;
 use serde::Serialize;
+
+pub use drivers::{DriverFacts, DriverFrame};
 
 use super::Extent;
 use crate::geometry::number::Bounds;
@@ -63,6 +67,9 @@ pub struct ClipFacts {
     /// What joints reach, by the names of their nodes.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub reaches: IndexMap<String, ReachFacts>,
+    /// Weights that follow the angles of joints, by the names of nodes and states.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub drivers: IndexMap<String, DriverFacts>,
     /// The scene at some times.
     pub poses: Vec<PoseFacts>,
 }
@@ -196,6 +203,7 @@ pub(super) fn motion(file: &Read<'_>, written: &Written, model: &Model) -> Resul
                 bound: known.bound,
                 bounds: stage.bounds(animation, duration),
                 reaches: stage.reaches(animation, model, (&known.name, written.root)),
+                drivers: stage.drivers(animation, model, (&known.name, duration)),
                 poses: (0..POSES).map(|k| stage.pose(animation, time(k))).collect(),
             },
         );
@@ -322,6 +330,14 @@ impl<'a> Stage<'a> {
         told
     }
 
+    /// The node of a joint. Joints and sockets follow the nodes of the document, skeleton by skeleton; copies that are places
+    /// of one node stand after them.
+    fn joint_node(&self, model: &Model, (skeleton, joint): (usize, usize)) -> usize {
+        let before = model.skeletons[..skeleton].iter();
+        let before: usize = before.map(|one| one.skeleton.joints.len() + one.sockets.len()).sum();
+        model.nodes.len() - self.file.copies + before + joint
+    }
+
     /// How near the points of joints come to their places, frame by frame.
     fn reaches(
         &self,
@@ -333,11 +349,7 @@ impl<'a> Stage<'a> {
         let scale = root.map_or(1.0, |root| self.rest[root].scale.x);
         let clip = model.clips.iter().find(|known| known.name == clip);
         let facts = |task: &ReachTask| {
-            // Joints and sockets follow the nodes of the document, skeleton by skeleton; copies that are places of one node
-            // stand after them.
-            let before = model.skeletons[..task.skeleton].iter();
-            let before: usize = before.map(|one| one.skeleton.joints.len() + one.sockets.len()).sum();
-            let node = model.nodes.len() - self.file.copies + before + task.joint;
+            let node = self.joint_node(model, (task.skeleton, task.joint));
             let frame = |(time, place, left): &(f64, DVec3, f64)| {
                 let found = self.worlds(animation, *time)[node].transform_point3(task.point);
                 let place = outside.transform_point3(*place);

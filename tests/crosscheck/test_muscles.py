@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from test_morphs import inside, state
 
-from checks import played
+from checks import compare, played, written
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -137,6 +138,25 @@ def test_a_muscle_swells_with_the_angle_of_its_joint(kiln: Kiln, limits: str) ->
     assert np.abs(driven(baked) - wanted).max() <= 1.1 * 0.0005 / 0.1
     assert driven(baked)[0] == 0.0
     assert baked.document.json["meshes"][0].get("weights", [0.0]) == [0.0]
+    facts = baked.report["clips"]["c"]["drivers"]["b.swollen"]
+    assert (facts["joint"], facts["axis"], facts["from"], facts["to"]) == ("high", "x", 20, 80)
+    assert facts["worst"] <= 2.2 * 0.0005 / 0.1
+    assert len(facts["frames"]) == 9
+    for frame in facts["frames"]:
+        angle = min(45.0 * frame["time"], 50.0) if limits else 45.0 * frame["time"]
+        assert frame["angle"] == pytest.approx(angle, abs=0.05)
+        assert frame["weight"] == pytest.approx(min(max(angle - 20.0, 0.0) / 60.0, 1.0), abs=0.006)
+    # What the report tells is held against the bytes: another weight, angle or difference is found.
+    for change, place in (("weight", "weight"), ("angle", "angle"), ("worst", "worst")):
+        told = copy.deepcopy(baked.report)
+        task = told["clips"]["c"]["drivers"]["b.swollen"]
+        if change == "worst":
+            task["worst"] += 0.01
+        else:
+            task["frames"][4][change] += 0.01
+        findings = list(compare.drivers("a", ("c", told["clips"]["c"]), written.measure(baked.path)))
+        wrong = [finding.place for finding in findings if not finding.holds]
+        assert wrong == [f"clips.c.drivers.b.swollen.{place}"]
 
 
 def test_heights_morph_on_one_grid_of_triangles(kiln: Kiln) -> None:
