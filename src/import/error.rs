@@ -219,6 +219,9 @@ impl ImportError {
                 "files that it names stand beside it, inside the project".to_owned()
             }
             Self::Gltf(_) => "the file is damaged; the Khronos glTF validator tells more of it".to_owned(),
+            Self::Ply(PlyFault::Places { .. }) => {
+                "export the mesh again: its points need three coordinates".to_owned()
+            }
             Self::Truncated { .. }
             | Self::TooShort { .. }
             | Self::Md2(_)

@@ -16,6 +16,7 @@ use thiserror::Error;
 
 use self::body::Body;
 use self::header::{Element, Kind};
+use super::error::quoted;
 use super::{ImportError, ImportOptions, Imported, MaterialLook, Note};
 use crate::geometry::mesh::polygon::NONE;
 use crate::geometry::mesh::{Color, PolygonMesh, index};
@@ -32,6 +33,12 @@ pub enum PlyFault {
         /// What must stand there.
         expected: &'static str,
         /// What does.
+        found: String,
+    },
+    /// Points without places.
+    #[error("element `vertex` has no properties `x`, `y` and `z`, it has {found}")]
+    Places {
+        /// What it has.
         found: String,
     },
     /// More than the file has room for.
@@ -175,6 +182,12 @@ impl Found {
             names.iter().map(|names| element.find(names)).collect()
         };
         let (point, normal, place) = (columns(&POINT), columns(&NORMAL), columns(&PLACE));
+        if point.is_none() && element.count > 0 {
+            let names: Vec<String> =
+                element.properties.iter().map(|own| format!("`{}`", quoted(own.name.as_bytes()))).collect();
+            let found = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+            return Err(PlyFault::Places { found });
+        }
         let shade = Shade::of(element);
         for row in 0..element.count {
             let mut numbers = vec![0.0; element.properties.len()];

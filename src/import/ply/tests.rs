@@ -39,6 +39,13 @@ fn model(bytes: &[u8]) -> Imported {
     read(bytes, &ImportOptions::default()).expect("a mesh")
 }
 
+#[test]
+fn points_have_places() {
+    let fault = read(TEXT.replace("float x", "float q").as_bytes(), &ImportOptions::default());
+    let message = fault.expect_err("no x").to_string();
+    assert!(message.contains("no properties `x`, `y` and `z`, it has `q`, `y`, `z`, `nx`"), "{message}");
+}
+
 /// Faces show the pictures of their numbers, as MeshLab writes them; without numbers the first.
 #[test]
 fn pictures_are_named_by_comments() {
