@@ -6,7 +6,7 @@ use crate::language::Document;
 use crate::language::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::language::source::{Files, Span};
 use crate::language::spec::Spec;
-use crate::model::ShapeHandle;
+use crate::model::{Recipe, ShapeHandle};
 use crate::realize::RealizeError;
 use crate::scene;
 
@@ -51,7 +51,7 @@ pub(super) fn refused(built: &Built, shape: ShapeHandle, error: &RealizeError) -
                 .at(place_of(built, shape, state), "this state")
                 .also(place(built, shape), "this shape")
                 .note("surfaces over parameters correspond where they have as many parts; polygons where they are the same; heights, whole ellipsoids and perturbed patches along their rays; all else only where the triangles are")
-                .help("change no number of parts, corners or copies, or write the same `segments` or `levels` for both")
+                .help(way_out(&built.model.shape(shape).recipe))
         }
         RealizeError::State { state, error } => {
             let code = if matches!(**error, RealizeError::Limit { .. } | RealizeError::Together { .. }) {
@@ -66,6 +66,22 @@ pub(super) fn refused(built: &Built, shape: ShapeHandle, error: &RealizeError) -
         }
         _ => return None,
     })
+}
+
+/// What to write in place of states that have other triangles.
+fn way_out(recipe: &Recipe) -> &'static str {
+    match recipe {
+        Recipe::Implicit { .. } => {
+            "a field's surface is cut anew wherever it goes: move one surface by the joints of a skin, or write the states as cages of `subdivide`, as `perturbed` patches or by parameters"
+        }
+        Recipe::Solid(_) => {
+            "edges lie where the bodies of a solid meet, which each state has elsewhere: let nodes or joints move its parts, or let the bodies morph one by one, each shown by a node of its own"
+        }
+        Recipe::Quadric(quadric) if quadric.within.is_some() => {
+            "the rim of a quadric that is cut off has other points in each state: write the part as `revolve`, `parametric` or a patch, whose points keep their parameters"
+        }
+        _ => "change no number of parts, corners or copies, or write the same `segments` or `levels` for both",
+    }
 }
 
 /// States whose bound could not be brought under their tolerance.
