@@ -9,6 +9,7 @@ use crate::geometry::field::{
     AnyField, Blend, Bump, Element, Form, Join, Joined, Line, Perturbed, Placed, Potential, Primitive,
     Quadric, Skeleton, Sum,
 };
+use crate::geometry::mesh;
 use crate::geometry::mesh::triangulate::triangulate_in_space;
 use crate::geometry::number::Bounds;
 use crate::geometry::tessellate::FieldSurface;
@@ -18,13 +19,13 @@ use crate::language::spec::{
     FallOff, Field as Kind, FieldDefinition, FieldJoin, FieldReference, FieldSum, ImplicitShape, JoinMethod,
     PerturbedField, SkeletonElement, SkeletonField, Sp, Spec,
 };
-use crate::model::{MaterialHandle, Recipe};
+use crate::model::{MaterialHandle, Recipe, ShapeHandle};
 
 impl Builder<'_> {
     /// The surface of a field.
     pub(super) fn implicit_shape(&mut self, written: &ImplicitShape, span: Span) -> Option<Recipe> {
         let field = self.field_of(&written.field)?;
-        let materials = self.element_materials(&written.field)?;
+        let materials = self.body_materials(&written.field)?;
         let colors = self.element_colors(&written.field);
         let level = written.level.value;
         let field = if level == 0.0 {
@@ -32,7 +33,18 @@ impl Builder<'_> {
         } else {
             AnyField::Sum(Sum { of: vec![(1.0, field)], constant: -level })
         };
-        let known = if level == 0.0 { field.bounds() } else { None };
+        let mut shapes = Vec::new();
+        let mut place = |number: usize| {
+            let known = shapes.iter().position(|shape| *shape == number);
+            AnyField::Shape(known.unwrap_or_else(|| {
+                shapes.push(number);
+                shapes.len() - 1
+            }))
+        };
+        let field = field.with_shapes(&mut place);
+        let shapes: Vec<ShapeHandle> =
+            shapes.into_iter().map(|number| ShapeHandle(mesh::index(number))).collect();
+        let known = if level == 0.0 { box_of(&field) } else { None };
         let within =
             written.within.as_ref().map(|within| Bounds { min: within.min.value, max: within.max.value });
         let Some(within) = within.or(known) else {
@@ -43,7 +55,8 @@ impl Builder<'_> {
             return None;
         };
         let size = (within.max - within.min).to_array();
-        if within.is_empty() || size.iter().any(|side| *side <= 0.0) {
+        let later = !shapes.is_empty() && written.within.is_none();
+        if !later && (within.is_empty() || size.iter().any(|side| *side <= 0.0)) {
             self.report(
                 Diagnostic::error(
                     Code::NoFieldSurface,
@@ -54,7 +67,7 @@ impl Builder<'_> {
             return None;
         }
         let surface = FieldSurface { field, within, least: written.search.map(|size| size.value) };
-        Some(Recipe::Implicit { surface: Box::new(surface), materials, colors })
+        Some(Recipe::Implicit { surface: Box::new(surface), shapes, materials, colors })
     }
 
     /// The field that a reference names or writes.
@@ -71,25 +84,51 @@ impl Builder<'_> {
             return known.clone();
         }
         let definition = self.spec.fields.get(name)?;
+        let outside = self.within.replace((name.to_owned(), true));
         let field = self.field(&definition.value);
+        self.within = outside;
         self.fields.insert(name.to_owned(), field.clone());
         field
     }
 
-    /// The materials of the elements of a skeleton; none of other fields.
-    fn element_materials(&mut self, reference: &FieldReference) -> Option<Vec<Option<MaterialHandle>>> {
-        let elements = written_elements(self.spec, reference);
-        if elements.iter().all(|element| element.value.material.is_none()) {
-            return Some(Vec::new());
-        }
+    /// The materials of the bodies that a field is made of, as [`AnyField::owners`] counts them; none where none has one.
+    fn body_materials(&mut self, reference: &FieldReference) -> Option<Vec<Option<MaterialHandle>>> {
         let mut all = Vec::new();
-        for element in elements {
-            all.push(match &element.value.material {
-                Some(name) => Some(self.material(&name.value.0)?),
-                None => None,
-            });
-        }
-        Some(all)
+        self.add_materials(reference, None, &mut all)?;
+        Some(if all.iter().all(Option::is_none) { Vec::new() } else { all })
+    }
+
+    fn add_materials(
+        &mut self,
+        reference: &FieldReference,
+        outer: Option<MaterialHandle>,
+        all: &mut Vec<Option<MaterialHandle>>,
+    ) -> Option<()> {
+        let spec = self.spec;
+        let Some(definition) = written(spec, reference) else { return Some(()) };
+        let own = match &definition.options.material {
+            Some(name) => Some(self.material(&name.value.0)?),
+            None => outer,
+        };
+        let inner = match &definition.kind {
+            Kind::Skeleton(skeleton) => {
+                for element in &skeleton.elements {
+                    all.push(match &element.value.material {
+                        Some(name) => Some(self.material(&name.value.0)?),
+                        None => own,
+                    });
+                }
+                return Some(());
+            }
+            Kind::Union(join) | Kind::Intersection(join) | Kind::Difference(join) => &join.of[..],
+            Kind::Sum(sum) => &sum.of[..1],
+            Kind::Perturbed(perturbed) => std::slice::from_ref(&perturbed.base),
+            _ => {
+                all.push(own);
+                return Some(());
+            }
+        };
+        inner.iter().try_for_each(|part| self.add_materials(part, own, all))
     }
 
     /// The colors of the elements of a skeleton; none of other fields.
@@ -163,6 +202,10 @@ impl Builder<'_> {
             Kind::Cone(cone) => {
                 let (bottom, top) = (cone.radius.value, cone.top_radius.value);
                 body(Primitive::Cone { bottom, top, half: cone.height.value / 2.0 }, cone.center.value)
+            }
+            Kind::Shape(shape) => {
+                let user = self.within.as_ref().map_or("field", |(name, _)| name).to_owned();
+                AnyField::Shape(self.shape_of(&user, 0, &shape.of)?.0 as usize)
             }
             Kind::HalfSpace(half) => {
                 let normal = half.normal.value.normalize();
@@ -279,13 +322,26 @@ impl Builder<'_> {
     }
 }
 
-/// The elements of a skeleton as they are written; none of other fields.
-fn written_elements<'s>(spec: &'s Spec, reference: &'s FieldReference) -> &'s [Sp<SkeletonElement>] {
-    let definition: Option<&FieldDefinition> = match reference {
+/// A box around the surface of a field; an empty one where it is that of shapes that are not made yet.
+fn box_of(field: &AnyField) -> Option<Bounds> {
+    if field.shapes().is_empty() {
+        return field.bounds();
+    }
+    let stand_in = || AnyField::Primitive(Primitive::Sphere { radius: 1.0 });
+    field.with_shapes(&mut |_| stand_in()).bounds().map(|_| Bounds::EMPTY)
+}
+
+/// The definition that a reference names or writes.
+fn written<'s>(spec: &'s Spec, reference: &'s FieldReference) -> Option<&'s FieldDefinition> {
+    match reference {
         FieldReference::Named(name) => spec.fields.get(&name.value).map(|field| &field.value),
         FieldReference::Inline(field) => Some(&field.value),
-    };
-    match definition.map(|definition| &definition.kind) {
+    }
+}
+
+/// The elements of a skeleton as they are written; none of other fields.
+fn written_elements<'s>(spec: &'s Spec, reference: &'s FieldReference) -> &'s [Sp<SkeletonElement>] {
+    match written(spec, reference).map(|definition| &definition.kind) {
         Some(Kind::Skeleton(skeleton)) => &skeleton.elements,
         _ => &[],
     }

@@ -63,6 +63,7 @@ impl Builder<'_> {
 fn what(field: &AnyField) -> &'static str {
     match field {
         AnyField::Primitive(_) => "the distance to a body",
+        AnyField::Shape(_) | AnyField::Distance(_) => "the distance to a shape",
         AnyField::Skeleton(_) => "a skeleton",
         AnyField::Formula(_) => "a formula",
         AnyField::Joined(_) => "several fields joined",

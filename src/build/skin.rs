@@ -93,6 +93,21 @@ impl Builder<'_> {
     /// For each bump its joint, which was looked up, and what it is.
     fn skin_bumps(&mut self, written: &spec::Skin, joints: &[usize]) -> Option<Vec<(usize, Bump)>> {
         let fields: Vec<_> = written.bump.iter().map(|bump| self.field_of(&bump.field)).collect();
+        let mut made = true;
+        for (field, bump) in fields.iter().zip(&written.bump) {
+            if field.as_ref().is_some_and(|field| !field.shapes().is_empty()) {
+                let message = "the field of a skin's bump cannot be the distance to a shape";
+                let report =
+                    Diagnostic::error(Code::PatchBump, message).at(bump.field.span(), "holds a shape");
+                self.report(report.help(
+                    "write the shape as simple bodies: `{ capsule = { radius = 0.1, height = 0.4 } }`",
+                ));
+                made = false;
+            }
+        }
+        if !made {
+            return None;
+        }
         let of = |((field, bump), joint): ((Option<AnyField>, &spec::SkinBump), &usize)| {
             Some((*joint, Bump { field: field?, factor: bump.factor.value }))
         };

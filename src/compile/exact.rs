@@ -64,6 +64,10 @@ fn refine_model(model: &mut Model, tolerance: f64) {
                 cages.push((recipe.cage, model.shape(handle).options.tolerance));
                 Vec::new()
             }
+            Recipe::Implicit { shapes, .. } => {
+                cages.extend(shapes.iter().map(|part| (*part, None)));
+                Vec::new()
+            }
             _ => Vec::new(),
         };
         for part in inner {

@@ -68,9 +68,12 @@ pub enum Recipe {
     Quadric(ClippedQuadric),
     /// Where a field is zero.
     Implicit {
-        /// The surface.
+        /// The surface. Where its field has shapes, their numbers are places in `shapes`, and a box that is empty is that of the
+        /// field once they are made.
         surface: Box<FieldSurface>,
-        /// For each element of its skeleton the material; none where no element has one.
+        /// The shapes to which distances are in the field.
+        shapes: Vec<ShapeHandle>,
+        /// For each body of its field the material; none where none has one.
         materials: Vec<Option<MaterialHandle>>,
         /// For each element of its skeleton the color, linear; none where no element has one.
         colors: Vec<[f64; 4]>,

@@ -7,6 +7,7 @@ use glam::{DAffine3, DVec3};
 use super::deformation::deformation;
 use super::reach::bent;
 use crate::geometry::curve::{AnyCurve, Curve as _, Side};
+use crate::geometry::field::{AnyField, Placed, Primitive};
 use crate::geometry::number::Bounds;
 use crate::geometry::subdivide::Scheme;
 use crate::geometry::surface::{AnySurface, Deformation, Surface as _};
@@ -66,6 +67,9 @@ pub(super) fn extents(model: &Model) -> Extents {
                 Bounds { min: own.min - more, max: own.max + more }
             }
             Recipe::Subdivided(refined) => of_cage(&all.bounds(refined.cage), refined.scheme),
+            Recipe::Implicit { surface, shapes, .. } if surface.within.is_empty() => {
+                of_field(&all, &surface.field, shapes)
+            }
             recipe => extent(recipe),
         };
         all.boxes.push(mapped(&own, &shape.options.placement));
@@ -83,6 +87,17 @@ fn of_solid(all: &Extents, solid: &SolidRecipe) -> Bounds {
     }
     let growth = solid.growth().max(0.0);
     Bounds { min: bounds.min - growth, max: bounds.max + growth }
+}
+
+/// The box of a field by those of the shapes in it.
+fn of_field(all: &Extents, field: &AnyField, shapes: &[ShapeHandle]) -> Bounds {
+    let stand_in = |number: usize| {
+        let bounds = shapes.get(number).map_or(Bounds::EMPTY, |shape| all.bounds(*shape));
+        let half = ((bounds.max - bounds.min) / 2.0).max(DVec3::ZERO);
+        let body = AnyField::Primitive(Primitive::Box { half, radius: 0.0 });
+        AnyField::Placed(Placed::new(body, &DAffine3::from_translation(bounds.center())))
+    };
+    field.with_shapes(&mut |number| stand_in(number)).bounds().unwrap_or(Bounds::EMPTY)
 }
 
 /// The box of a subdivision surface: its points lie between those of the cage, but for the scheme that goes through them.

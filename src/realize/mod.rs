@@ -13,6 +13,7 @@ mod displace;
 mod estimate;
 mod extents;
 mod facets;
+mod field;
 mod height;
 mod inherited;
 mod keep;

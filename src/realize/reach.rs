@@ -36,7 +36,7 @@ impl Search<'_> {
             let offset = map.translation.dot(direction);
             (low + offset, high + offset)
         };
-        if self.left == 0 {
+        if self.left == 0 || is_box(&shape.recipe) {
             let local = map.matrix3.transpose() * direction;
             return moved(map, of_box(&self.extents.bounds(handle), local));
         }
@@ -84,6 +84,11 @@ impl Search<'_> {
     }
 }
 
+/// Whether of a recipe alone no more is known than a box.
+fn is_box(recipe: &Recipe) -> bool {
+    matches!(recipe, Recipe::Implicit { shapes, .. } if !shapes.is_empty())
+}
+
 fn of_points(points: impl Iterator<Item = DVec3>, direction: DVec3) -> (f64, f64) {
     let all = (f64::INFINITY, f64::NEG_INFINITY);
     points.map(|point| point.dot(direction)).fold(all, |(low, high), value| (low.min(value), high.max(value)))
@@ -112,7 +117,7 @@ struct Gathering<'a> {
 
 impl Gathering<'_> {
     fn shape(&mut self, handle: ShapeHandle, map: &dyn Fn(DVec3) -> DVec3) {
-        if self.left == 0 {
+        if self.left == 0 || is_box(&self.model.shape(handle).recipe) {
             self.all.extend(box_lattice(&self.extents.bounds(handle)).into_iter().map(map));
             return;
         }

@@ -130,6 +130,7 @@ fn parts(recipe: &Recipe) -> Vec<ShapeHandle> {
         Recipe::Deformed { of, .. } | Recipe::Displaced(Displacement { of, .. }) => vec![*of],
         Recipe::Solid(solid) => solid.parts.clone(),
         Recipe::Subdivided(refined) => vec![refined.cage],
+        Recipe::Implicit { shapes, .. } => shapes.clone(),
         _ => Vec::new(),
     }
 }
@@ -186,7 +187,7 @@ fn own(recipe: &Recipe, options: &ShapeOptions) -> Hash {
             feed.add(&(scheme, levels, limit, border_corners, triangulate)).add(&(creases, corners));
         }
         Recipe::Patches { patches, materials } => _ = feed.add(patches).add(&materials.len()),
-        Recipe::Implicit { surface, materials, colors } => {
+        Recipe::Implicit { surface, shapes: _, materials, colors } => {
             feed.add(surface).add(&materials.len()).add(colors);
         }
         Recipe::Polygons { mesh, materials } => {
@@ -229,4 +230,39 @@ fn polygons(feed: &mut Feed, mesh: &PolygonMesh) {
         has_smoothing,
         smoothing_masks,
     ));
+}
+
+#[cfg(test)]
+mod tests {
+    use blake3::{Hash, Hasher};
+
+    use super::RecipeHashes;
+    use crate::compile::{Options, model};
+    use crate::language::Document;
+    use crate::language::source::MemoryFiles;
+    use crate::model::ShapeHandle;
+
+    /// The hash of the shape `s` of a document.
+    fn of(text: &str) -> Hash {
+        let files = MemoryFiles::new().with("a.toml", text);
+        let document = Document::load("a.toml", &files).unwrap();
+        let model = model(&document, &files, &Options::default()).unwrap();
+        let place = model.shapes.iter().position(|shape| shape.name == "s").unwrap();
+        let mut hasher = Hasher::new();
+        RecipeHashes::new(&model).feed(ShapeHandle(u32::try_from(place).unwrap()), &mut hasher);
+        hasher.finalize()
+    }
+
+    #[test]
+    fn a_field_depends_on_the_shapes_in_it_and_on_no_others() {
+        let text = |before: &str, size: f64| {
+            format!(
+                "{before}[shape.b.box]\nsize = [{size}, 1, 1]\n[field.f.shape]\nof = \"b\"\n\
+                 [shape.s.implicit]\nfield = {{ union = {{ of = [\"f\", {{ sphere = {{ radius = 1 }} }}] }} }}\n"
+            )
+        };
+        let other = "[shape.a.sphere]\nradius = 2\n";
+        assert_eq!(of(&text("", 1.0)), of(&text(other, 1.0)));
+        assert_ne!(of(&text("", 1.0)), of(&text("", 1.5)));
+    }
 }

@@ -3,13 +3,14 @@
 use glam::{DAffine3, DMat3};
 
 use super::extents::Extents;
+use super::field::dress_elements;
 use super::inherited::Inherited;
 use super::limit::{self, Cost};
 use super::mapping::lay;
-use super::material::{middle, own_or, show_normals, source_of, split_by_element};
+use super::material::{own_or, show_normals, source_of, split_by_element};
 use super::reach::bent;
 use super::source::source_count;
-use super::vertex_color::{blend, color};
+use super::vertex_color::color;
 use super::{Faces, Level, Memo, Note, Options, RealizeError};
 use crate::geometry::mesh;
 use crate::geometry::mesh::convert::{ConvertOptions, Shading, convert};
@@ -150,6 +151,9 @@ impl<'a> Maker<'a> {
             Recipe::Solid(recipe) => {
                 self.solid(handle, recipe, wanted.within(&shape.options.placement), next_source)?
             }
+            Recipe::Implicit { shapes, .. } if !shapes.is_empty() => {
+                self.around_shapes(handle, wanted.within(&shape.options.placement), next_source)?
+            }
             Recipe::Subdivided(recipe) => {
                 self.subdivided(handle, recipe, wanted.within(&shape.options.placement), next_source)?
             }
@@ -192,19 +196,7 @@ impl<'a> Maker<'a> {
         let tolerance = self.coarsened(Self::tolerance(shape, tolerance), level);
         // What rounding will add is taken off beforehand, as long as it leaves half.
         let aim = (tolerance - rounding).max(tolerance / 2.0);
-        let detail = Detail {
-            density: match shape.options.density {
-                Some(grid) => SurfaceDensity::Grid { u: level.steps(grid.u), v: level.steps(grid.v) },
-                None => SurfaceDensity::Tolerance(aim / stretch),
-            },
-            crease_angle: match shape.options.smoothing {
-                Smoothing::Auto => shape.options.crease_angle,
-                Smoothing::Smooth => 180.0,
-                Smoothing::Flat => 0.0,
-            },
-            uv,
-            triangle_limit: limit::triangle_limit(&self.model.limits),
-        };
+        let detail = self.detail(shape, aim / stretch, (uv, level));
         let surface = |made: Tessellation| Made {
             mesh: made.mesh,
             wire: Wire::default(),
@@ -240,16 +232,10 @@ impl<'a> Maker<'a> {
             Recipe::Quadric(shape) => quadric(shape, &detail),
             Recipe::Perturbed(skin) => perturbed(skin, &detail),
             Recipe::Trimmed(shape) => trimmed(shape, &detail),
-            Recipe::Implicit { surface: field, materials, colors } => {
+            Recipe::Implicit { surface: field, materials, colors, .. } => {
                 let made = field_surface(field, &detail).map_err(|error| self.in_terms_of_limits(error))?;
                 let mut made = surface(made);
-                blend(&mut made, &field.field, colors);
-                if !materials.is_empty() {
-                    let of = |mesh: &Mesh, corners: &[VertexIndex; 3]| {
-                        field.field.strongest(middle(mesh, corners)).unwrap_or(0)
-                    };
-                    split_by_element(&mut made, of, &own_or(materials, shape.options.material));
-                }
+                dress_elements(&mut made, &field.field, (materials, colors), shape.options.material);
                 return self.finished(shape, made);
             }
             Recipe::Height(map) => height_map(map, &detail, tolerance / stretch),
@@ -275,14 +261,31 @@ impl<'a> Maker<'a> {
         self.finished(shape, surface(made))
     }
 
-    fn in_terms_of_limits(&self, error: TessellateError) -> RealizeError {
+    /// How finely a surface is cut that is to be within a tolerance in its own space.
+    pub(super) fn detail(&self, shape: &Shape, aim: f64, (uv, level): (bool, Level)) -> Detail {
+        Detail {
+            density: match shape.options.density {
+                Some(grid) => SurfaceDensity::Grid { u: level.steps(grid.u), v: level.steps(grid.v) },
+                None => SurfaceDensity::Tolerance(aim),
+            },
+            crease_angle: match shape.options.smoothing {
+                Smoothing::Auto => shape.options.crease_angle,
+                Smoothing::Smooth => 180.0,
+                Smoothing::Flat => 0.0,
+            },
+            uv,
+            triangle_limit: limit::triangle_limit(&self.model.limits),
+        }
+    }
+
+    pub(super) fn in_terms_of_limits(&self, error: TessellateError) -> RealizeError {
         match error {
             TessellateError::TooMany { needed, .. } => limit::in_terms_of(needed, &self.model.limits),
             error => error.into(),
         }
     }
 
-    fn finished(&self, shape: &Shape, made: Made) -> Result<Made, RealizeError> {
+    pub(super) fn finished(&self, shape: &Shape, made: Made) -> Result<Made, RealizeError> {
         // Boxes, flat faces and polygons have one normal a face already.
         let faceted = matches!(
             shape.recipe,

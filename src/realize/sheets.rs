@@ -2,7 +2,7 @@
 //!
 //! Balls, boxes, cylinders, cones and tori have fields of their own; quadrics, implicit surfaces and perturbed patches are
 //! fields; solids of such bodies, cut by planes too, join their fields, and groups take all of them. Other shapes have
-//! none: surfaces over parameters, heights, polygons, and what is bent, displaced, refined, rounded or hulled.
+//! none: surfaces over parameters, heights, polygons, distances to shapes, and what is bent, displaced, refined, rounded or hulled.
 
 use glam::{DAffine3, DVec3};
 
@@ -121,7 +121,9 @@ fn body(model: &Model, recipe: &Recipe) -> Option<Body> {
         }
         Recipe::Geodesic(ball) => bounded(moved(Primitive::Sphere { radius: ball.radius }, DVec3::ZERO)),
         Recipe::Revolution(revolution) => bounded(turned(revolution)?),
-        Recipe::Implicit { surface, .. } => Some((surface.field.clone(), surface.within)),
+        Recipe::Implicit { surface, shapes, .. } if shapes.is_empty() => {
+            Some((surface.field.clone(), surface.within))
+        }
         Recipe::Quadric(quadric) if !quadric.form().kind.is_flat() => {
             let own = AnyField::Quadric(Box::new(quadric.quadric));
             let field = match &quadric.within {

@@ -333,7 +333,7 @@ fn has_lines(model: &Model, handle: ShapeHandle) -> bool {
 }
 
 /// Whether nothing promises that a shape does not cross itself.
-fn may_cross(model: &Model, handle: ShapeHandle) -> bool {
+pub(super) fn may_cross(model: &Model, handle: ShapeHandle) -> bool {
     found(model, handle, |recipe| {
         matches!(
             recipe,

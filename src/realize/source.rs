@@ -74,7 +74,8 @@ pub(super) enum Kind {
     Line(AnyCurve),
     /// Where a polynomial is zero.
     Quadric(Quadric),
-    /// A surface that follows from others and has no form of its own: that of a hull, of a rounded shape, of a hollow.
+    /// A surface that follows from others and has no form of its own: that of a hull, of a rounded shape, of a hollow,
+    /// of a field with distances to shapes.
     Derived,
     /// Where a field is zero.
     Implicit(Arc<FieldSurface>),
@@ -302,6 +303,7 @@ fn kinds(recipe: &Recipe, bends: bool) -> Vec<Kind> {
             let kind = |source| shape.surface(source).map_or_else(|| flat(source), Kind::Quadric);
             (0..ClippedQuadric::SOURCES).map(kind).collect()
         }
+        Recipe::Implicit { shapes, .. } if !shapes.is_empty() => vec![Kind::Derived],
         Recipe::Implicit { surface, .. } => vec![Kind::Implicit(Arc::new(surface.as_ref().clone()))],
         Recipe::Perturbed(skin) => vec![Kind::Perturbed(Arc::new(skin.as_ref().clone()))],
         Recipe::Wire(curves) => curves.iter().map(|curve| Kind::Line(curve.clone())).collect(),

@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 use std::collections::BTreeSet;
 
 use kiln::compile::Options;
-use kiln::geometry::number::floor_large;
+use kiln::geometry::number::{acos, floor_large};
 
 use super::{assert_near, bake, compile};
 
@@ -161,4 +161,85 @@ fn fields_are_parts_of_solids_and_cages() {
     let facts = &baked.only().facts;
     assert!(facts.closed && facts.manifold && facts.genus == Some(0), "{facts:?}");
     assert_eq!(facts.triangles % 16, 0);
+}
+
+/// A body moved outward by r is as large as Steiner says: V + A r + M r² + 4/3 π r³, where M is half of the sum over the edges of
+/// length times the angle that they turn by.
+#[test]
+fn a_shape_that_is_grown_is_as_large_as_steiner_says() {
+    let tetrahedron = "[shape.a.polyhedron]\nsolid = \"tetrahedron\"\nedge = 1\n";
+    let edge_turn = PI - acos(1.0 / 3.0);
+    let root = |x: f64| x.sqrt();
+    for (shape, [volume, area, bend]) in [
+        (
+            "[shape.a.box]\nsize = [1, 0.6, 0.8]\n",
+            [0.48, 2.0 * (0.6 + 0.48 + 0.8), 4.0 * (1.0 + 0.6 + 0.8) * PI / 4.0],
+        ),
+        (tetrahedron, [1.0 / (6.0 * root(2.0)), root(3.0), 6.0 * edge_turn / 2.0]),
+    ] {
+        let r = 0.2;
+        let text = format!(
+            "tolerance = 0.04\n{shape}[shape.s.implicit]\nfield = {{ shape = {{ of = \"a\" }}, grow = {r} }}\n"
+        );
+        let baked = bake(&text);
+        let facts = &baked.only().facts;
+        assert!(facts.closed && facts.manifold && facts.genus == Some(0), "{facts:?}");
+        let wanted = volume + area * r + bend * r * r + 4.0 / 3.0 * PI * r * r * r;
+        let off = facts.volume.expect("closed") - wanted;
+        assert!(off < 1e-6 && -off < 0.04 * facts.area, "{off} of {wanted}: {facts:?}");
+    }
+}
+
+/// A cube comes back as its twelve triangles: edges of the shape are edges where the field is 0.
+#[test]
+fn edges_of_a_shape_stay_sharp() {
+    let baked = bake(
+        "[shape.a.box]\nsize = [1, 0.6, 0.8]\ncenter = [0, 1, 0]\n\
+         [shape.s.implicit]\nfield = { shape = { of = \"a\" } }",
+    );
+    let facts = &baked.only().facts;
+    assert_eq!((facts.triangles, facts.closed), (12, true), "{facts:?}");
+    assert_near(facts.volume.expect("closed"), 0.48, 1e-6);
+}
+
+/// A ball as a shape, blended with another: within the tolerance of the same made of simple bodies, and as smooth.
+#[test]
+fn a_round_shape_is_as_smooth_as_its_own_field() {
+    let blended = |one: &str| {
+        let text = format!(
+            "tolerance = 0.01\n[shape.b.sphere]\nradius = 0.5\n[field.f.union]\nblend = 0.2\n\
+             of = [{one}, {{ sphere = {{ radius = 0.3, center = [0.6, 0, 0] }} }}]\n\
+             [shape.s.implicit]\nfield = \"f\"\n[node.n]\nshape = \"s\"\n"
+        );
+        bake(&text)
+    };
+    let (mesh, body) = (blended("{ shape = { of = \"b\" } }"), blended("{ sphere = { radius = 0.5 } }"));
+    let volume = |baked: &super::Baked| baked.only().facts.volume.expect("closed");
+    assert!((volume(&mesh) / volume(&body) - 1.0).abs() < 0.02, "{} {}", volume(&mesh), volume(&body));
+    let own = mesh.glb.named("s");
+    let (mut seen, mut worst) = (0, 1.0_f64);
+    for ([x, y, z], [a, b, c]) in own.positions.iter().zip(&own.normals) {
+        if *x < -0.1 {
+            let length = (x * x + y * y + z * z).sqrt();
+            worst = worst.min((x * a + y * b + z * c) / length);
+            seen += 1;
+        }
+    }
+    assert!(seen > 20 && worst > 0.9995, "{seen} {worst}");
+}
+
+/// Each body has its material where it is the nearest, and a hole that of what made it.
+#[test]
+fn bodies_of_a_field_have_materials_of_their_own() {
+    let baked = bake(
+        "tolerance = 0.02\n[shape.b.box]\nsize = [1, 1, 1]\n[field.f.difference]\nof = [\
+         { union = { of = [{ shape = { of = \"b\" }, material = \"stone\" }, \
+         { sphere = { radius = 0.4, center = [0, 0.6, 0] }, material = \"gold\" }] } }, \
+         { cylinder = { radius = 0.2, height = 2 }, rotate = [90, 0, 0] }]\n\
+         [shape.s.implicit]\nfield = \"f\"\n[shape.s]\nmaterial = \"soot\"\n\
+         [material.stone]\n[material.gold]\n[material.soot]\n",
+    );
+    let facts = &baked.only().facts;
+    assert!(facts.closed && facts.genus == Some(1), "{facts:?}");
+    assert_eq!(baked.only().primitives, 3);
 }

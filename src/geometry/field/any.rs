@@ -1,9 +1,11 @@
 //! Any field of the language, in any kind of number.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::tree::{Joined, Placed, Sum};
-use super::{Blend, Field, Join, Perturbed, Primitive, Quadric, Skeleton, Study};
+use super::{Blend, Distance, Field, Join, Perturbed, Primitive, Quadric, Skeleton, Study};
 use crate::geometry::formula::{
     Algebra, Binary, Formula, Interval, Jet, Operation, Unary, minus, plus, times,
 };
@@ -35,6 +37,10 @@ pub enum AnyField {
         /// Half of its thickness.
         half: f64,
     },
+    /// The distance to a shape that is not made yet, by its number; it has no value.
+    Shape(usize),
+    /// The distance to a shape.
+    Distance(Arc<Distance>),
     /// Another one, its surface moved outward.
     Grown {
         /// The other one.
@@ -155,6 +161,8 @@ impl AnyField {
                 value
             }
             Self::Quadric(quadric) => S::leaf(quadric.as_ref(), place),
+            Self::Shape(_) => S::constant(f64::NAN),
+            Self::Distance(shape) => S::leaf(shape.as_ref(), place),
             Self::Joined(joined) => joined.evaluate(place),
             Self::Sum(sum) => sum.evaluate(place),
             Self::Placed(placed) => placed.evaluate(place),
@@ -174,23 +182,46 @@ impl AnyField {
         match self {
             Self::Skeleton(skeleton) => skeleton.value_gradient(point),
             Self::Quadric(quadric) => quadric.leaf_gradient(point),
+            Self::Distance(shape) => shape.leaf_gradient(point),
             Self::Perturbed(perturbed) => perturbed.value_gradient(point),
-            Self::Joined(joined) => joined.value_gradient(point),
-            Self::Sum(sum) => sum.value_gradient(point),
-            Self::Placed(placed) => placed.value_gradient(point),
-            Self::Skin { of, half } => {
-                let (value, gradient) = of.value_gradient(point);
-                ((value * value / half - half) / 2.0, gradient * (value / half))
+            Self::Joined(_) | Self::Sum(_) | Self::Placed(_) | Self::Skin { .. } | Self::Grown { .. } => {
+                self.made_of(point, Self::value_gradient)
             }
-            Self::Grown { of, by } => {
-                let (value, gradient) = of.value_gradient(point);
-                (value - by, gradient)
-            }
-            Self::Primitive(_) | Self::Formula(_) => {
+            Self::Primitive(_) | Self::Formula(_) | Self::Shape(_) => {
                 let place = point.to_array();
                 let jet = self.evaluate([0, 1, 2].map(|axis| Slope::<f64>::variable(place[axis], axis)));
                 (jet.value, DVec3::from_array(jet.first))
             }
+        }
+    }
+
+    /// Value and derivative, where triangles stand for a smooth shape with the normals of that one.
+    #[must_use]
+    pub fn value_normal(&self, point: DVec3) -> (f64, DVec3) {
+        match self {
+            Self::Distance(shape) => shape.slope(point),
+            Self::Joined(_) | Self::Sum(_) | Self::Placed(_) | Self::Skin { .. } | Self::Grown { .. } => {
+                self.made_of(point, Self::value_normal)
+            }
+            _ => self.value_gradient(point),
+        }
+    }
+
+    /// Value and derivative of what is made of others, from theirs.
+    fn made_of(&self, point: DVec3, each: fn(&Self, DVec3) -> (f64, DVec3)) -> (f64, DVec3) {
+        match self {
+            Self::Joined(joined) => joined.value_gradient(point, each),
+            Self::Sum(sum) => sum.value_gradient(point, each),
+            Self::Placed(placed) => placed.value_gradient(point, each),
+            Self::Skin { of, half } => {
+                let (value, gradient) = each(of, point);
+                ((value * value / half - half) / 2.0, gradient * (value / half))
+            }
+            Self::Grown { of, by } => {
+                let (value, gradient) = each(of, point);
+                (value - by, gradient)
+            }
+            _ => each(self, point),
         }
     }
 
@@ -208,6 +239,7 @@ impl AnyField {
             Self::Perturbed(perturbed) => perturbed.study(within),
             Self::Joined(joined) => joined.study(within),
             Self::Placed(placed) => placed.study(within),
+            Self::Distance(shape) => shape.leaf_study(within),
             _ => {
                 let sides = sides(within);
                 let jet = self.evaluate([0, 1, 2].map(|axis| Slope::variable(sides[axis], axis)));
@@ -228,20 +260,14 @@ impl AnyField {
         }
     }
 
-    /// Of a skeleton, moved or not, the element whose share is greatest at a point.
-    #[must_use]
-    pub fn strongest(&self, point: DVec3) -> Option<usize> {
-        let all = self.shares(point).into_iter().enumerate();
-        all.reduce(|best, one| if one.1 > best.1 { one } else { best }).map(|(index, _)| index)
-    }
-
     /// Whether its surface may have edges.
     #[must_use]
     pub fn has_kinks(&self) -> bool {
         match self {
             Self::Primitive(body) => body.has_edges(),
             Self::Skeleton(skeleton) => skeleton.has_kinks(),
-            Self::Quadric(_) => false,
+            Self::Quadric(_) | Self::Shape(_) => false,
+            Self::Distance(shape) => shape.has_edges(),
             Self::Formula(formula) => formula.operations().iter().any(kinked),
             Self::Joined(joined) => {
                 !matches!(
@@ -261,7 +287,10 @@ impl AnyField {
                 of.has_kinks()
                     || matches!(
                         **of,
-                        Self::Primitive(Primitive::Box { .. }) | Self::Placed(_) | Self::Joined(_)
+                        Self::Primitive(Primitive::Box { .. })
+                            | Self::Placed(_)
+                            | Self::Joined(_)
+                            | Self::Distance(_)
                     )
             }
         }
@@ -271,7 +300,9 @@ impl AnyField {
     #[must_use]
     pub fn weight(&self) -> u64 {
         match self {
-            Self::Primitive(_) | Self::Quadric(_) => 1,
+            Self::Primitive(_) | Self::Quadric(_) | Self::Shape(_) => 1,
+            // Some boxes on the way down the tree, and the triangles at its end.
+            Self::Distance(shape) => 4 + u64::from(shape.len().max(1).ilog2()),
             Self::Skeleton(skeleton) => skeleton.weight(),
             Self::Formula(formula) => (formula.operations().len() as u64).max(1),
             Self::Joined(joined) => joined.of.iter().map(Self::weight).sum::<u64>().max(1),
@@ -293,6 +324,7 @@ impl AnyField {
                 matches!(joined.join, Join::Union(Blend::Sharp)) && joined.of.iter().all(Self::is_distance)
             }
             Self::Grown { of, .. } => of.is_distance(),
+            Self::Distance(_) => true,
             // The values of a skin are squares.
             _ => false,
         }
@@ -303,8 +335,8 @@ impl AnyField {
     #[must_use]
     pub fn is_continuous(&self) -> bool {
         match self {
-            Self::Primitive(_) | Self::Skeleton(_) | Self::Quadric(_) => true,
-            Self::Formula(_) => false,
+            Self::Primitive(_) | Self::Skeleton(_) | Self::Quadric(_) | Self::Distance(_) => true,
+            Self::Formula(_) | Self::Shape(_) => false,
             Self::Joined(joined) => joined.of.iter().all(Self::is_continuous),
             Self::Sum(sum) => sum.of.iter().all(|(_, field)| field.is_continuous()),
             Self::Placed(placed) => placed.of.is_continuous(),
@@ -325,12 +357,13 @@ impl AnyField {
             Self::Joined(joined) => joined.bounds(),
             Self::Placed(placed) => placed.bounds(),
             Self::Quadric(quadric) => quadric.ends(),
+            Self::Distance(shape) => Some(shape.bounds()),
             Self::Perturbed(perturbed) => perturbed.bounds(),
             Self::Skin { of, half: by } | Self::Grown { of, by } if of.is_distance() => {
                 let inner = of.bounds()?;
                 Some(Bounds { min: inner.min - *by, max: inner.max + *by })
             }
-            Self::Formula(_) | Self::Sum(_) | Self::Skin { .. } | Self::Grown { .. } => None,
+            Self::Formula(_) | Self::Shape(_) | Self::Sum(_) | Self::Skin { .. } | Self::Grown { .. } => None,
         }
     }
 }

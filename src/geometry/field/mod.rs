@@ -5,12 +5,18 @@
 
 mod any;
 mod bump;
+mod distance;
+#[cfg(test)]
+mod distance_tests;
 mod element;
 mod join;
 mod line;
+mod normal_cone;
+mod owner;
 mod primitive;
 pub mod quadric;
 mod relief;
+mod shapes;
 mod sheet;
 mod skeleton;
 #[cfg(test)]
@@ -19,6 +25,7 @@ mod tree;
 
 pub use any::AnyField;
 pub use bump::{Bump, Perturbed};
+pub use distance::Distance;
 pub use element::{Element, Form};
 pub use join::{Blend, Join};
 pub use line::Line;

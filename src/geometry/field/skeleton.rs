@@ -123,6 +123,11 @@ pub struct Skeleton {
 }
 
 impl Skeleton {
+    /// How many elements it has.
+    pub(super) fn len(&self) -> usize {
+        self.elements.len()
+    }
+
     /// About how many simple bodies one value costs as much as.
     pub(super) fn weight(&self) -> u64 {
         let of = |element: &Element| match &element.form {

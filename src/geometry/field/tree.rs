@@ -8,6 +8,9 @@ use super::{AnyField, Join, Study};
 use crate::geometry::formula::{Interval, plus, times};
 use crate::geometry::number::Bounds;
 
+/// Value and derivative of a part.
+type Slope = fn(&AnyField, DVec3) -> (f64, DVec3);
+
 /// Several fields joined, from the first on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joined {
@@ -44,8 +47,8 @@ impl Joined {
         values.fold(first, |all, one| self.join.apply(all, one))
     }
 
-    pub(super) fn value_gradient(&self, point: DVec3) -> (f64, DVec3) {
-        let mut all = self.of.iter().map(|field| field.value_gradient(point));
+    pub(super) fn value_gradient(&self, point: DVec3, each: Slope) -> (f64, DVec3) {
+        let mut all = self.of.iter().map(|field| each(field, point));
         let first = all.next().unwrap_or((1.0, DVec3::ZERO));
         all.fold(first, |one, other| self.join.apply_with_slopes(one, other))
     }
@@ -88,9 +91,9 @@ impl Sum {
         })
     }
 
-    pub(super) fn value_gradient(&self, point: DVec3) -> (f64, DVec3) {
+    pub(super) fn value_gradient(&self, point: DVec3, each: Slope) -> (f64, DVec3) {
         self.of.iter().fold((self.constant, DVec3::ZERO), |(value, gradient), (factor, field)| {
-            let (own, slope) = field.value_gradient(point);
+            let (own, slope) = each(field, point);
             (value + factor * own, gradient + slope * *factor)
         })
     }
@@ -121,8 +124,8 @@ impl Placed {
         times(S::constant(self.scale), self.of.evaluate(rows))
     }
 
-    pub(super) fn value_gradient(&self, point: DVec3) -> (f64, DVec3) {
-        let (value, slope) = self.of.value_gradient(self.back.transform_point3(point));
+    pub(super) fn value_gradient(&self, point: DVec3, each: Slope) -> (f64, DVec3) {
+        let (value, slope) = each(&self.of, self.back.transform_point3(point));
         (value * self.scale, self.back.matrix3.transpose() * slope * self.scale)
     }
 

@@ -90,7 +90,7 @@ pub fn distance_between(coarse: &Mesh, fine: &Mesh) -> f64 {
 }
 
 /// Weights of the corners of a triangle for a point on it.
-fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
+pub(crate) fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
     let normal = (b - a).cross(c - a);
     let square = normal.length_squared();
     if square > 0.0 {
@@ -113,39 +113,56 @@ fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
 }
 
 /// The nearest point of a triangle.
+#[must_use]
+pub fn nearest_of_triangle(corners: [DVec3; 3], point: DVec3) -> DVec3 {
+    nearest_part(corners, point).0
+}
+
+/// A part of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// A corner, by its number.
+    Corner(usize),
+    /// A side, by the number of the corner at which it starts.
+    Side(usize),
+    /// What is between the sides.
+    Inside,
+}
+
+/// The nearest point of a triangle, and the least part of it that the point lies on.
 ///
 /// Source: C. Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
 #[must_use]
-pub fn nearest_of_triangle([a, b, c]: [DVec3; 3], point: DVec3) -> DVec3 {
+pub fn nearest_part([a, b, c]: [DVec3; 3], point: DVec3) -> (DVec3, Part) {
     let (ab, ac, ap) = (b - a, c - a, point - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
     if d1 <= 0.0 && d2 <= 0.0 {
-        return a;
+        return (a, Part::Corner(0));
     }
     let bp = point - b;
     let (d3, d4) = (ab.dot(bp), ac.dot(bp));
     if d3 >= 0.0 && d4 <= d3 {
-        return b;
+        return (b, Part::Corner(1));
     }
     let vc = d1 * d4 - d3 * d2;
     if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return a + ab * (d1 / (d1 - d3));
+        return (a + ab * (d1 / (d1 - d3)), Part::Side(0));
     }
     let cp = point - c;
     let (d5, d6) = (ab.dot(cp), ac.dot(cp));
     if d6 >= 0.0 && d5 <= d6 {
-        return c;
+        return (c, Part::Corner(2));
     }
     let vb = d5 * d2 - d1 * d6;
     if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return a + ac * (d2 / (d2 - d6));
+        return (a + ac * (d2 / (d2 - d6)), Part::Side(2));
     }
     let va = d3 * d6 - d5 * d4;
     if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+        return (b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), Part::Side(1));
     }
     let sum = va + vb + vc;
-    a + ab * (vb / sum) + ac * (vc / sum)
+    (a + ab * (vb / sum) + ac * (vc / sum), Part::Inside)
 }
 
 #[cfg(test)]

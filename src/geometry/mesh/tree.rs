@@ -40,7 +40,7 @@ impl Tree {
     }
 
     /// The box around all triangles.
-    pub(super) fn bounds(&self) -> Bounds {
+    pub(crate) fn bounds(&self) -> Bounds {
         self.nodes[0]
     }
 
@@ -77,6 +77,11 @@ impl Tree {
             enter <= leave
         };
         self.visit_where(meets, with);
+    }
+
+    /// All triangles whose boxes are no further from a point than `reach`, until `with` says that it is enough.
+    pub(crate) fn visit_near(&self, point: DVec3, reach: f64, with: impl FnMut(u32) -> bool) {
+        self.visit_where(|bounds| gap(bounds, point) <= reach, with);
     }
 
     /// All triangles whose boxes are as asked for, until `with` says that it is enough.

@@ -10,6 +10,7 @@
 //! computation, University of Cambridge, 2009, chapter 4) in its Rust port. Only `engine` knows that library. Without the
 //! feature `csg` every operation answers [`SolidFault::Missing`].
 
+mod body;
 mod carry;
 mod check;
 mod decompose;
@@ -29,6 +30,7 @@ mod engine;
 #[cfg(test)]
 mod tests;
 
+pub use body::{Body, body};
 pub use check::Check;
 pub use decompose::{ConvexPart, Decomposing, MOST_BODIES, decompose};
 pub use enclose::{Round, enclosing_capsule, enclosing_cylinder, enclosing_hull, enclosing_radius};

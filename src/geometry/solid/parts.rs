@@ -60,7 +60,7 @@ fn mark(how: &Combination, used: &mut [bool]) {
 }
 
 /// The pieces of one part.
-fn pieces(stock: &Stock, part: usize, check: Check) -> Result<Vec<Piece>, SolidFault> {
+pub(super) fn pieces(stock: &Stock, part: usize, check: Check) -> Result<Vec<Piece>, SolidFault> {
     let mut whole = whole(stock, part);
     whole.check = check;
     if whole.triangles.is_empty() {

@@ -13,7 +13,7 @@ use crate::language::spec::material::Color;
 use crate::language::spec::primitive::{BoxShape, Capsule, Cone, Cylinder, Sphere, Torus};
 use crate::language::spec::quadric::Within;
 use crate::language::spec::reader::{Fields, Read, Reader};
-use crate::language::spec::reference::{CurveReference, FieldReference, MaterialName};
+use crate::language::spec::reference::{CurveReference, FieldReference, MaterialName, ShapeReference};
 use crate::language::spec::schema::Schemas;
 use crate::language::spec::spanned::Sp;
 use crate::language::value::Value;
@@ -35,6 +35,9 @@ table! {
         /// How far the surface moves outward; of a negative number inward. Exact where values are distances, as those of
         /// simple bodies are.
         grow: Sp<f64> = 0.0;
+        /// The material of the surface where it is this field's: where of fields that are joined this one is the nearest, and
+        /// on what a difference cuts with it. Elements of skeletons may have others; a field that is a part of this one too.
+        material: Option<Sp<MaterialName>>;
         /// Factor of size, applied before `rotate` and `at`. Values grow with it.
         scale: Sp<f64> = 1.0 => Check::above(0.0);
         /// Degrees about the x axis, then the y axis, then the z axis.
@@ -65,6 +68,8 @@ kinds! {
         Torus(Torus) = "torus";
         /// Distance to a cone.
         Cone(Cone) = "cone";
+        /// Distance to a closed shape.
+        Shape(ShapeField) = "shape";
         /// Distance to a plane.
         HalfSpace(HalfSpaceField) = "half-space";
         /// All points of any.
@@ -165,6 +170,17 @@ table! {
         z: Sp<f64> = 0.0;
         /// What is added.
         constant: Sp<f64> = 0.0;
+    }
+}
+
+table! {
+    /// The distance to a closed shape of any kind: a mesh, an imported file, a solid, a revolution. What is round is cut into
+    /// triangles first, within an eighth of the tolerance of the surface that is asked for, or within its own `tolerance`, and
+    /// where it looks smooth the surface does. Edges stay sharp where the field is 0; moved outward they become
+    /// round, as by a ball, and moved inward they stay. The shape itself is not shown, and its materials do not count.
+    "shape field" pub ShapeField {
+        /// The shape, by name or in place. Its faces look outward, enclose it and do not cross each other.
+        of: ShapeReference;
     }
 }
 

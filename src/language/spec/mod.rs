@@ -105,7 +105,8 @@ pub use document::{Asset, Definition, Spec, Unit};
 pub use dxf::Dxf;
 pub use field::{
     BumpField, FallOff, Field, FieldDefinition, FieldFormula, FieldJoin, FieldOptions, FieldQuadric,
-    FieldSum, HalfSpaceField, ImplicitShape, JoinMethod, PerturbedField, SkeletonElement, SkeletonField,
+    FieldSum, HalfSpaceField, ImplicitShape, JoinMethod, PerturbedField, ShapeField, SkeletonElement,
+    SkeletonField,
 };
 pub use formula::{Formula, FormulaCurve, FormulaForm};
 pub use grid::{Degrees, Directions, Rows};

@@ -72,6 +72,7 @@ const CHAPTERS: [(&str, &str, &[&str]); 8] = [
             "element",
             "field formula",
             "field quadric",
+            "shape field",
             "half space",
             "field join",
             "field sum",

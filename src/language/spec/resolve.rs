@@ -52,8 +52,11 @@ pub(crate) fn resolve(names: &Names, deepest: u32, reader: &mut Reader<'_>) -> (
             reader.report(unknown(one, names));
         }
     }
-    for family in Family::ALL {
-        Graph::of(family, names, &uses).check(deepest, reader);
+    // Shapes are made of fields, and fields of shapes.
+    let bodies = [Family::Shape, Family::Field];
+    Graph::of(&bodies, names, &uses).check(deepest, reader);
+    for family in Family::ALL.into_iter().filter(|family| !bodies.contains(family)) {
+        Graph::of(&[family], names, &uses).check(deepest, reader);
     }
     let shapes: Vec<&Use> = uses.iter().filter(|one| one.family == Family::Shape).collect();
     let by = |one: &Use, family: Family| {
@@ -116,10 +119,9 @@ fn unknown(one: &Use, names: &Names) -> Diagnostic {
     }
 }
 
-/// Which definitions of a family use which others of it.
+/// Which definitions of some families use which others of them.
 struct Graph<'n> {
-    family: Family,
-    names: Vec<&'n str>,
+    names: Vec<(Family, &'n str)>,
     edges: Vec<Vec<(usize, Span)>>,
 }
 
@@ -133,17 +135,17 @@ enum Mark {
 }
 
 impl<'n> Graph<'n> {
-    fn of(family: Family, names: &'n Names, uses: &[Use]) -> Self {
-        let index: IndexMap<&str, usize> = names.list(family).zip(0..).collect();
+    fn of(families: &[Family], names: &'n Names, uses: &[Use]) -> Self {
+        let all = families.iter().flat_map(|family| names.list(*family).map(|name| (*family, name)));
+        let index: IndexMap<(Family, &str), usize> = all.zip(0..).collect();
         let mut edges = vec![Vec::new(); index.len()];
-        for one in uses.iter().filter(|one| one.family == family) {
-            let user = one.user.as_ref().filter(|(from, _)| *from == family).map(|(_, name)| name.as_str());
-            let from = user.and_then(|name| index.get(name));
-            if let (Some(from), Some(to)) = (from, index.get(one.name.as_str())) {
+        for one in uses.iter().filter(|one| families.contains(&one.family)) {
+            let from = one.user.as_ref().and_then(|(family, name)| index.get(&(*family, name.as_str())));
+            if let (Some(from), Some(to)) = (from, index.get(&(one.family, one.name.as_str()))) {
                 edges[*from].push((*to, one.span));
             }
         }
-        Self { family, names: index.into_keys().collect(), edges }
+        Self { names: index.into_keys().collect(), edges }
     }
 
     /// Depth-first search without recursion: reports each circle that closes and chains that are too long.
@@ -192,22 +194,25 @@ impl<'n> Graph<'n> {
 
     fn circle(&self, path: &[(usize, usize)], to: usize, span: Span) -> Diagnostic {
         let start = path.iter().position(|(at, _)| *at == to).unwrap_or(0);
-        let names: Vec<&str> = path[start..].iter().map(|(at, _)| self.names[*at]).collect();
-        let (family, first) = (self.family.text(), self.names[to]);
+        let names: Vec<&str> = path[start..].iter().map(|(at, _)| self.names[*at].1).collect();
+        let (family, first) = self.names[to];
+        let alike = path[start..].iter().all(|(at, _)| self.names[*at].0 == family);
+        let whose = if alike { family.text() } else { "definition" };
         let message = match names.as_slice() {
-            [_] => format!("{} refers to itself", titled(self.family, first)),
-            _ => format!("{family}s refer to each other in a circle: {} -> {first}", names.join(" -> ")),
+            [_] => format!("{} refers to itself", titled(family, first)),
+            _ => format!("{whose}s refer to each other in a circle: {} -> {first}", names.join(" -> ")),
         };
         let mut report = Diagnostic::error(Code::Cycle, message).at(span, format!("leads back to `{first}`"));
         for (at, followed) in &path[start..path.len() - 1] {
             let (to, span) = self.edges[*at][followed - 1];
-            report = report.also(span, format!("`{}` uses `{}`", self.names[*at], self.names[to]));
+            report = report.also(span, format!("`{}` uses `{}`", self.names[*at].1, self.names[to].1));
         }
         report
     }
 
     fn too_deep(&self, at: usize, deepest: u32) -> Diagnostic {
-        let message = format!("more than {deepest} {}s refer to each other in a row", self.family.text());
+        let message =
+            format!("more than {deepest} {}s refer to each other in a row", self.names[at].0.text());
         let span = self.edges[at].first().map_or(Span::NONE, |(_, span)| *span);
         Diagnostic::error(Code::TooDeep, message)
             .at(span, "too deep")

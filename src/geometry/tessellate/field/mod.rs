@@ -93,7 +93,7 @@ impl FieldSurface {
     #[must_use]
     pub fn distance(&self, place: DVec3) -> f64 {
         let work = Work::default();
-        let probe = Probe { field: &self.field, size: self.size(), work: &work };
+        let probe = Probe::new(&self.field, self.size(), &work);
         let settled = probe.settle(place, 0.1 * self.size());
         settled.map_or_else(|| probe.far(place), |(on, _)| on.distance(place))
     }
@@ -219,7 +219,7 @@ impl FieldSurface {
         };
         let skin = Skin::new(rough.points, rough.triangles).map_err(leaves)?;
         let work = Work::default();
-        let probe = Probe { field, size: self.size(), work: &work };
+        let probe = Probe::new(field, self.size(), &work);
         let maker = Maker { probe, kinks: field.has_kinks(), tolerance, limit, zones };
         let (refiner, bound) = maker.refined(skin, &rough.brackets)?;
         let made = dress::dress(&refiner, self, detail);

@@ -14,6 +14,8 @@ pub(super) struct Probe<'a> {
     pub(super) size: f64,
     /// What was asked of the field.
     pub(super) work: &'a Work,
+    /// Whether triangles in it stand for something smooth.
+    faceted: bool,
 }
 
 /// Counts how often a field is asked. Sums do not depend on the order of what is added, so a budget that is compared
@@ -38,7 +40,16 @@ const BUDGET: u64 = 1 << 27;
 /// Share of the size at which a step is the last: the next would be its square.
 const LAST_STEP: f64 = 1e-8;
 
-impl Probe<'_> {
+impl<'a> Probe<'a> {
+    pub(super) fn new(field: &'a AnyField, size: f64, work: &'a Work) -> Self {
+        Self { field, size, work, faceted: !field.distances().is_empty() }
+    }
+
+    /// The direction in which a surface looks, by the gradient near by.
+    fn normal(&self, place: DVec3, gradient: DVec3) -> Option<DVec3> {
+        let gradient = if self.faceted { self.field.value_normal(place).1 } else { gradient };
+        gradient.try_normalize()
+    }
     /// Whether the field was asked as often as it may be.
     pub(super) fn is_spent(&self) -> bool {
         self.work.spent().saturating_mul(self.field.weight()) > BUDGET
@@ -61,7 +72,11 @@ impl Probe<'_> {
                 return None;
             }
             if length <= LAST_STEP * self.size {
-                return Some((place, gradient / square.sqrt()));
+                let normal = gradient / square.sqrt();
+                return Some((
+                    place,
+                    self.normal(place, gradient).filter(|_| self.faceted).unwrap_or(normal),
+                ));
             }
         }
         None
@@ -107,14 +122,16 @@ impl Probe<'_> {
             }
         }
         let place = if low.abs() <= high.abs() { inside } else { outside };
-        let normal = self.field.gradient(place).normalize_or((outside - inside).normalize_or(DVec3::Y));
+        let normal = self.normal(place, self.field.gradient(place));
+        let normal = normal.unwrap_or_else(|| (outside - inside).normalize_or(DVec3::Y));
         (place, normal)
     }
 
     /// The unit gradient a short way from `place` towards another: the normal of that side.
     pub(super) fn normal_towards(&self, place: DVec3, towards: DVec3, share: f64) -> DVec3 {
         self.work.add(1);
-        self.field.gradient(place.lerp(towards, share)).normalize_or_zero()
+        let place = place.lerp(towards, share);
+        self.normal(place, self.field.gradient(place)).unwrap_or_default()
     }
 
     /// The place on the edge between two sides of the surface, near `from`; each side by a place on it.
