@@ -80,7 +80,9 @@ fn way_out(recipe: &Recipe) -> &'static str {
         Recipe::Quadric(quadric) if quadric.within.is_some() => {
             "the rim of a quadric that is cut off has other points in each state: write the part as `revolve`, `parametric` or a patch, whose points keep their parameters"
         }
-        _ => "change no number of parts, corners or copies, or write the same `segments` or `levels` for both",
+        _ => {
+            "change no number of parts, corners or copies, or write the same `segments` or `levels` for both"
+        }
     }
 }
 

@@ -179,7 +179,7 @@ fn a_shape_that_is_grown_is_as_large_as_steiner_says() {
     ] {
         let r = 0.2;
         let text = format!(
-            "tolerance = 0.04\n{shape}[shape.s.implicit]\nfield = {{ shape = {{ of = \"a\" }}, grow = {r} }}\n"
+            "tolerance = 0.04\n{shape}[shape.s.implicit]\nfield = {{ shape = {{ of = \"a\" }}, grow = {r} }}\nsearch = 0.05\n"
         );
         let baked = bake(&text);
         let facts = &baked.only().facts;
@@ -236,7 +236,7 @@ fn bodies_of_a_field_have_materials_of_their_own() {
          { union = { of = [{ shape = { of = \"b\" }, material = \"stone\" }, \
          { sphere = { radius = 0.4, center = [0, 0.6, 0] }, material = \"gold\" }] } }, \
          { cylinder = { radius = 0.2, height = 2 }, rotate = [90, 0, 0] }]\n\
-         [shape.s.implicit]\nfield = \"f\"\n[shape.s]\nmaterial = \"soot\"\n\
+         [shape.s.implicit]\nfield = \"f\"\nsearch = 0.05\n[shape.s]\nmaterial = \"soot\"\n\
          [material.stone]\n[material.gold]\n[material.soot]\n",
     );
     let facts = &baked.only().facts;

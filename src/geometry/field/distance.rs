@@ -238,24 +238,39 @@ impl Distance {
         (value, sum.normalize_or(slope))
     }
 
-    /// All slopes at places whose nearest points are no further from a place than `reach`; none where too much is near.
-    fn slopes(&self, center: DVec3, reach: f64) -> Option<Cone> {
+    /// All slopes at places no further than `room` from a place, whose nearest points are no further from it than `reach`; none
+    /// where too much is near.
+    fn slopes(&self, center: DVec3, room: f64, reach: f64) -> Option<Cone> {
         let mut all: Option<Cone> = None;
-        let mut add = |cone: Cone| all = Some(all.map_or(cone, |all| all.union(cone)));
+        let mut add = |cone: Option<Cone>| {
+            if let Some(cone) = cone {
+                all = Some(all.map_or(cone, |all| all.union(cone)));
+            }
+        };
         let mut count = 0;
+        let over = room + 1e-13 * (self.bounds().reach() + reach);
         self.tree.visit_near(center, reach, |triangle| {
             let triangle = triangle as usize;
             let places = self.places(triangle);
             if nearest_of_triangle(places, center).distance(center) <= reach {
                 count += 1;
-                add(Cone::of_one(self.planes[triangle]));
+                // A place is over the triangle if its foot on the plane is in it.
+                let plane = self.planes[triangle];
+                let foot = center - plane * (center - places[0]).dot(plane);
+                if nearest_of_triangle(places, foot).distance(foot) <= over {
+                    add(Some(Cone::of_one(plane)));
+                }
                 for side in 0..3 {
                     let (from, to) = (places[side], places[(side + 1) % 3]);
-                    if normal_cone::far(from, to, center) <= reach {
-                        add(self.edges[self.sides[triangle][side] as usize].cone);
+                    let (far, away) = normal_cone::far(from, to, center);
+                    if far <= reach {
+                        let edge = &self.edges[self.sides[triangle][side] as usize];
+                        add(edge.cone.seen(away, room, edge.normal));
                     }
-                    if from.distance(center) <= reach {
-                        add(self.corners[self.triangles[triangle][side] as usize].cone);
+                    let away = center - from;
+                    if away.length() <= reach {
+                        let corner = &self.corners[self.triangles[triangle][side] as usize];
+                        add(corner.cone.seen(away, room, corner.normal));
                     }
                 }
             }
@@ -279,7 +294,7 @@ impl Leaf for Distance {
         let (center, half) = (within.center(), within.diagonal() / 2.0);
         let value = self.leaf_value(center);
         let slack = 1e-13 * (self.bounds().reach() + center.abs().max_element() + half);
-        let cone = self.slopes(center, value.abs() + 2.0 * half + slack).unwrap_or(Cone::ALL);
+        let cone = self.slopes(center, half, value.abs() + 2.0 * half + slack).unwrap_or(Cone::ALL);
         // The middle is as far off as all corners: the slopes tell how much of that counts.
         let sides = (within.max - within.min) / 2.0;
         let most = cone.low.abs().max(cone.high.abs()).dot(sides).min(half);

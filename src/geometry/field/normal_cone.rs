@@ -37,6 +37,28 @@ impl Cone {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
+    /// Those of both alone; none where there are none.
+    fn meet(self, other: Self) -> Option<Self> {
+        let both = Self { low: self.low.max(other.low), high: self.high.min(other.high) };
+        both.low.cmple(both.high).all().then_some(both)
+    }
+
+    /// Those of them in which places lead that lie no further than `room` from one that is `away` from its nearest point; none
+    /// where that is the nearest point of no place. `outward` is outside.
+    pub(super) fn seen(self, away: DVec3, room: f64, outward: DVec3) -> Option<Self> {
+        let distance = away.length();
+        if distance <= 2.0 * room {
+            return Some(self);
+        }
+        // What moves by less than it is away turns by less than the sine says.
+        let sine = room / distance + SLACK;
+        let (axis, upright) = (away / distance, away.dot(outward) / (distance * outward.length()));
+        if upright.is_nan() || upright.abs() <= sine {
+            return Some(self);
+        }
+        self.meet(Self::around(axis * upright.signum(), (1.0 - sine * sine).sqrt()))
+    }
+
     /// Whether it holds one direction alone.
     pub(super) fn is_one(self) -> bool {
         (self.high - self.low).max_element() <= 4.0 * SLACK
@@ -58,12 +80,12 @@ pub(super) fn angle(one: DVec3, other: DVec3) -> f64 {
     atan2(one.cross(other).length(), one.dot(other))
 }
 
-/// How far a point is from a segment.
-pub(super) fn far(from: DVec3, to: DVec3, point: DVec3) -> f64 {
+/// How far a point is from a segment, and its way from the line through it.
+pub(super) fn far(from: DVec3, to: DVec3, point: DVec3) -> (f64, DVec3) {
     let along = to - from;
     let square = along.length_squared();
-    let share = if square > 0.0 { ((point - from).dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
-    (from + along * share).distance(point)
+    let share = if square > 0.0 { (point - from).dot(along) / square } else { 0.0 };
+    ((from + along * share.clamp(0.0, 1.0)).distance(point), point - (from + along * share))
 }
 
 /// The directions at an edge: the arc from the one normal to the other.
