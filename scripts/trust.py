@@ -26,6 +26,43 @@ KEPT = ROOT / "docs" / "trust.json"
 PAGE = ROOT / "docs" / "trust.md"
 
 
+# The kinds of documents in test_limits.py.
+GROWING = (
+    "surface",
+    "sweep",
+    "formula",
+    "field",
+    "solid",
+    "hull",
+    "round",
+    "bend",
+    "displacement",
+    "map",
+    "cage",
+    "copies",
+    "levels",
+)
+REFUSED = (
+    "triangles",
+    "vertices",
+    "steps",
+    "steps-of-a-map",
+    "pixels",
+    "copies-of-copies",
+    "list",
+    "brackets",
+    "long-expression",
+    "parameters",
+    "arrays",
+    "tables",
+    "dotted-key",
+    "shapes",
+    "nodes",
+    "includes",
+    "pictures",
+)
+
+
 @dataclass(frozen=True)
 class Row:
     """A line of the table: what is counted, and the test that counts it."""
@@ -62,6 +99,16 @@ ROWS = (
         ("damaged-gltf-files", "damaged-scenes", "damaged-packed-files", "damaged-optimized-files"),
         "binary files cut off or with a changed bit: read, or refused with a reason",
         "`import_gltf.rs`, `refusals.rs`, `profiles.rs`, `repack.rs`",
+    ),
+    Row(
+        tuple(f"limits-{kind}" for kind in GROWING),
+        "bakes of growing documents: memory measured from outside stays below its limit and 64 MB",
+        "`test_limits.py`",
+    ),
+    Row(
+        tuple(f"refused-{kind}" for kind in REFUSED),
+        "documents that ask for too much of one resource, refused before memory is taken",
+        "`test_limits.py`",
     ),
     Row(
         ("bakes-to-kill",),

@@ -44,7 +44,7 @@ impl Builder<'_> {
         let gaps = map.options.no_data.as_ref().map(|no_data| no_data.value);
         let (columns, mut values) = match &map.kind {
             Map::Image(image) => {
-                let limit = self.spec.limits.image_pixels;
+                let limit = self.spec.limits.samples();
                 self.file_heights(&image.file, gaps, Code::MapImage, |bytes| heights::png(bytes, limit))?
             }
             Map::Raw(raw) => self.raw_heights(raw, gaps)?,
@@ -88,12 +88,28 @@ impl Builder<'_> {
 
     /// Refuses more samples than the pixels of an image may be.
     fn allow_samples(&mut self, columns: u32, rows: u32, span: Span) -> Option<()> {
-        let limit = self.spec.limits.image_pixels;
+        let limit = self.spec.limits.samples();
         if u64::from(columns) * u64::from(rows) <= limit {
             return Some(());
         }
         let message = format!("this map has {columns} x {rows} samples, more than the limit of {limit}");
         self.report(Diagnostic::error(Code::LimitPassed, message).at(span, "too many"));
+        None
+    }
+
+    /// Refuses more steps for all samples than a document may take.
+    fn allow_steps(&mut self, [columns, rows]: [u32; 2], each: u64, span: Span) -> Option<()> {
+        let limit = self.spec.limits.steps;
+        let steps = (u64::from(columns) * u64::from(rows)).saturating_mul(each);
+        if steps <= limit {
+            return Some(());
+        }
+        let message = format!("the samples of this map take {steps} steps, more than the limit of {limit}");
+        self.report(
+            Diagnostic::error(Code::LimitPassed, message)
+                .at(span, "too many")
+                .help("write fewer columns and rows; `interpolation = \"bicubic\"` is smooth between them"),
+        );
         None
     }
 
@@ -160,7 +176,7 @@ impl Builder<'_> {
             RawNumber::F64 => heights::RawNumber::F64,
         };
         let (size, skip) = ([raw.columns.value, raw.rows.value], raw.skip.value);
-        let limit = self.spec.limits.image_pixels;
+        let limit = self.spec.limits.samples();
         self.file_heights(&raw.file, gaps, Code::MapFile, |bytes| {
             heights::raw(bytes, size, (number, skip), limit)
         })
@@ -168,7 +184,7 @@ impl Builder<'_> {
 
     fn grid_heights(&mut self, grid: &MapGrid, gaps: Option<NoData>) -> Option<Grid> {
         if let Some(file) = &grid.file {
-            let limit = self.spec.limits.image_pixels;
+            let limit = self.spec.limits.samples();
             return self.file_heights(file, gaps, Code::MapFile, |bytes| heights::ascii_grid(bytes, limit));
         }
         let rows = grid.rows.as_ref()?;
@@ -214,6 +230,7 @@ impl Builder<'_> {
         };
         let formula = compiler.finish(vec![output]).formula;
         let size = [written.columns.value, written.rows.value];
+        self.allow_steps(size, formula.steps(), written.columns.span)?;
         let (from, to) = (written.from.value, written.to.value);
         let grid = sampled(size, from, to, |x, y| {
             let [value] = formula.evaluate::<f64, 1>(&[x, y]);
@@ -236,11 +253,9 @@ impl Builder<'_> {
 
     fn noise_heights(&mut self, written: &MapNoise, span: Span) -> Option<Grid> {
         let size = [written.columns.value, written.rows.value];
-        self.allow_samples(
-            size[0],
-            size[1],
-            if written.columns.span.is_none() { span } else { written.columns.span },
-        )?;
+        let place = if written.columns.span.is_none() { span } else { written.columns.span };
+        self.allow_samples(size[0], size[1], place)?;
+        self.allow_steps(size, NOISE_STEPS * u64::from(written.octaves.value), place)?;
         let (gain, seed) = (written.gain.value, written.seed.value);
         let layers: Vec<(f64, f64)> = (0..written.octaves.value)
             .scan((1.0, 1.0), |(scale, height), _| {
@@ -289,11 +304,14 @@ impl Builder<'_> {
     }
 }
 
+/// Steps of one octave of noise at one place.
+const NOISE_STEPS: u64 = 8;
+
 /// What to do about a file that is no map.
 fn hint(error: &HeightsError) -> Option<&'static str> {
     match error {
         HeightsError::TooLarge { .. } => {
-            Some("scale it down; where [limits] lowers `image-pixels`, write more there")
+            Some("scale it down; where [limits] lowers `image-pixels` or `memory`, write more there")
         }
         HeightsError::Look { .. } | HeightsError::NotPng => {
             Some("save it as a grey PNG, for heights with 16 bits")

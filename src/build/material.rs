@@ -101,7 +101,7 @@ impl Builder<'_> {
                 return None;
             }
         };
-        let facts = match image::read(&bytes, self.spec.limits.image_pixels) {
+        let facts = match image::read(&bytes, self.spec.limits.pixels()) {
             Ok(facts) => facts,
             Err(error) => {
                 let message = format!("{} cannot be used as a texture: {error}", file.value.written);
@@ -137,7 +137,7 @@ impl Builder<'_> {
         for (channel, own) in channels.iter_mut().zip([occlusion, roughness, metallic]) {
             let Some(own) = own else { continue };
             let loaded = self.load_image(&own.value)?;
-            match image::pixels(&loaded.bytes, self.spec.limits.image_pixels) {
+            match image::pixels(&loaded.bytes, self.spec.limits.pixels()) {
                 Ok(pixels) => *channel = Some(pixels),
                 Err(error) => {
                     let message = format!("{} cannot be packed: {error}", own.value.file.value.written);

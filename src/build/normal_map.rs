@@ -59,10 +59,12 @@ impl Builder<'_> {
             return None;
         }
         let pixels = u64::from(size.u) * u64::from(size.v);
-        if pixels > self.spec.limits.image_pixels {
+        if pixels > self.spec.limits.pixels() {
             let message = format!(
                 "this normal map has {} x {} pixels, and the limit is {}",
-                size.u, size.v, self.spec.limits.image_pixels
+                size.u,
+                size.v,
+                self.spec.limits.pixels()
             );
             self.reports.push(Diagnostic::error(Code::LimitPassed, message).at(size.span, "too large"));
             return None;

@@ -131,7 +131,7 @@ impl Builder<'_> {
         if let Some(known) = self.images.get(&key).copied().flatten() {
             return Ok(known);
         }
-        let facts = image::read(bytes, self.spec.limits.image_pixels)?;
+        let facts = image::read(bytes, self.spec.limits.pixels())?;
         let kind = match facts.kind {
             image::Kind::Png => ImageKind::Png,
             image::Kind::Jpeg => ImageKind::Jpeg,

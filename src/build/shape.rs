@@ -217,12 +217,15 @@ impl Builder<'_> {
     /// A block of copies is refused before it is laid out.
     fn check_count(&mut self, array: &spec::Array) -> Option<()> {
         const MOST: u64 = 1_000_000;
+        // A copy is a part with its place, once more in each stage.
+        const BYTES_OF_COPY: u64 = 320;
+        let most = MOST.min(self.spec.limits.memory / BYTES_OF_COPY);
         let Count::Block(counts) = array.count.value else { return Some(()) };
         let copies = counts.iter().fold(1, |product: u64, count| product.saturating_mul(u64::from(*count)));
-        if copies <= MOST {
+        if copies <= most {
             return Some(());
         }
-        let message = format!("this array makes {copies} copies, and the limit is {MOST}");
+        let message = format!("this array makes {copies} copies, and the limit is {most}");
         self.report(Diagnostic::error(Code::LimitPassed, message).at(array.count.span, "too many"));
         None
     }

@@ -19,7 +19,7 @@ pub(super) fn fit(scene: &mut Scene, spec: &Spec, profile: Profile) -> Result<()
     let wish = Wish { most: most.map(|most| most.value.0), compress: asked.value.compress.value };
     let uses = uses(scene);
     let fit = |(image, own): (&mut crate::scene::Image, &(Meaning, [Edge; 2]))| -> Result<(), ImageError> {
-        if let Some(made) = fitted(&image.bytes, *own, wish, spec.limits.image_pixels)? {
+        if let Some(made) = fitted(&image.bytes, *own, wish, spec.limits.pixels())? {
             (image.bytes, image.kind) = (made.into(), ImageKind::Png);
         }
         Ok(())

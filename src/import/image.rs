@@ -94,7 +94,9 @@ impl ImageError {
     pub fn hint(&self) -> Option<String> {
         let hint = match self {
             Self::Format { .. } => "convert it to PNG",
-            Self::TooLarge { .. } => "scale it down; where [limits] lowers `image-pixels`, write more there",
+            Self::TooLarge { .. } => {
+                "scale it down; where [limits] lowers `image-pixels` or `memory`, write more there"
+            }
             Self::Damaged { .. } => "save it again from the program that made it",
             Self::Components { .. } => "convert it from CMYK to RGB",
         };

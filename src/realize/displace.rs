@@ -3,12 +3,12 @@
 use glam::{DVec2, DVec3};
 
 use super::inherited::Inherited;
-use super::limit;
+use super::limit::Working;
 use super::reach::bent;
 use super::shape::{Made, Maker, cost, flatten};
 use super::{Level, RealizeError};
 use crate::geometry::number::single_rounding;
-use crate::geometry::tessellate::{Deviation, Heights, TessellateError, displace, normal_picture};
+use crate::geometry::tessellate::{Deviation, Heights, displace, normal_picture};
 use crate::model::{Displacement, NormalMap, ShapeHandle, Smoothing};
 
 impl Maker<'_> {
@@ -23,16 +23,15 @@ impl Maker<'_> {
         let shape = self.model.shape(handle);
         let bounds = self.extents.bounds(recipe.of);
         let Subject { mut made, periods, tolerance, left } = self.subject(recipe, inherited)?;
+        Working::Displaced.check(made.mesh.triangles.len(), &self.model.limits)?;
         let before = made.deviation.bound;
         let height = |place: DVec3, uv: DVec2| recipe.heights.at(&bounds, place, uv);
         let detail = |places: [DVec3; 2], uvs: [DVec2; 2]| recipe.heights.detail(&bounds, places, uvs);
         let heights = Heights { height: &height, detail: &detail };
-        let limit = limit::triangle_limit(&self.model.limits);
+        let limit = Working::Displaced.most(&self.model.limits);
         let mesh = std::mem::take(&mut made.mesh);
-        let (mesh, moved) = displace(mesh, &heights, &periods, left, limit).map_err(|error| match error {
-            TessellateError::TooMany { needed, .. } => limit::in_terms_of(needed, &self.model.limits),
-            error => error.into(),
-        })?;
+        let (mesh, moved) = displace(mesh, &heights, &periods, left, limit)
+            .map_err(|error| self.in_terms_of_limits(Working::Displaced, error))?;
         made.mesh = mesh;
         made.deviation = Deviation::new(before + moved.bound, moved.evidence.max(made.deviation.evidence));
         made.tolerance = Some(tolerance);

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::inherited::Inherited;
+use super::limit::Working;
 use super::material::{middle, own_or, split_by_element};
 use super::shape::{Made, Maker, stretch};
 use super::solid::may_cross;
@@ -58,7 +59,8 @@ impl Maker<'_> {
         }
         let surface = FieldSurface { field, within, least: surface.least };
         let detail = self.detail(shape, left, (inherited.uv, inherited.level));
-        let made = field_surface(&surface, &detail).map_err(|error| self.in_terms_of_limits(error))?;
+        let made = field_surface(&surface, &detail)
+            .map_err(|error| self.in_terms_of_limits(Working::Field, error))?;
         let off = made.deviation;
         let mut made = Made {
             mesh: made.mesh,

@@ -15,9 +15,76 @@ pub(super) struct Cost {
     memory: u64,
 }
 
-/// Bytes of a triangle with its share of vertices (half a vertex each on a large smooth mesh), in memory and in
-/// the file.
-const BYTES_OF_TRIANGLE: u64 = 100;
+/// Bytes that a triangle takes at most while it is made, with its share of vertices (half a vertex each on a large smooth
+/// mesh), in memory and in the file. Figures are what the peak of a whole process grew by for each triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Working {
+    /// It is cut from a surface with parameters.
+    Surface,
+    /// It is cut from a formula, which is asked for bounds.
+    Formula,
+    /// It is found in a field: first triangles, bounds and corners that move stand beside it.
+    Field,
+    /// It is a face of a cage that is refined, with the level before.
+    Subdivided,
+    /// It is bent, twisted or tapered.
+    Deformed,
+    /// It is moved along its normal.
+    Displaced,
+    /// It is one of those that solids are combined from: halves of edges, boxes and crossings stand beside it.
+    Combined,
+    /// It is one of those that are wrapped by a hull.
+    Wrapped,
+}
+
+impl Working {
+    /// How a recipe makes its triangles.
+    pub(super) const fn of(recipe: &Recipe) -> Self {
+        match recipe {
+            Recipe::Implicit { .. } | Recipe::Perturbed(_) => Self::Field,
+            Recipe::Sheet(_) => Self::Formula,
+            Recipe::Subdivided(_) => Self::Subdivided,
+            Recipe::Deformed { .. } => Self::Deformed,
+            Recipe::Displaced(_) => Self::Displaced,
+            _ => Self::Surface,
+        }
+    }
+
+    const fn bytes(self) -> u64 {
+        match self {
+            Self::Surface => 110,
+            Self::Formula => 160,
+            Self::Subdivided => 200,
+            Self::Field | Self::Deformed | Self::Displaced => 320,
+            Self::Wrapped => 500,
+            Self::Combined => 800,
+        }
+    }
+
+    /// The most triangles of one surface, known before it is made.
+    pub(super) fn most(self, limits: &Limits) -> u64 {
+        limits.triangles.min(limits.memory / self.bytes())
+    }
+
+    /// A surface that was refused for its triangles, said in terms of the limit that was meant.
+    pub(super) fn refusal(self, needed: u64, limits: &Limits) -> RealizeError {
+        if self.most(limits) < limits.triangles {
+            let needed = needed.saturating_mul(self.bytes());
+            RealizeError::Limit { what: "bytes of memory", needed, limit: limits.memory }
+        } else {
+            RealizeError::Limit { what: "triangles", needed, limit: limits.triangles }
+        }
+    }
+
+    /// Refuses to make something of triangles that are there already, where that takes more memory than it may.
+    pub(super) fn check(self, triangles: usize, limits: &Limits) -> Result<(), RealizeError> {
+        let needed = (triangles as u64).saturating_mul(self.bytes());
+        if needed <= limits.memory {
+            return Ok(());
+        }
+        Err(RealizeError::Limit { what: "bytes of memory", needed, limit: limits.memory })
+    }
+}
 
 impl Cost {
     pub(super) fn of(mesh: &Mesh) -> Self {
@@ -77,11 +144,6 @@ impl Cost {
     }
 }
 
-/// The most triangles of one surface, known before it is made.
-pub(super) fn triangle_limit(limits: &Limits) -> u64 {
-    limits.triangles.min(limits.memory / BYTES_OF_TRIANGLE)
-}
-
 /// For each shape a number of triangles that it will have at least, known without making it: copies of copies
 /// are refused before the first is made.
 pub(super) fn least_triangles(model: &Model) -> Vec<u64> {
@@ -101,16 +163,6 @@ pub(super) fn least_triangles(model: &Model) -> Vec<u64> {
         });
     }
     all
-}
-
-/// A surface that was refused for its triangles, said in terms of the limit that was meant.
-pub(super) fn in_terms_of(needed: u64, limits: &Limits) -> RealizeError {
-    if triangle_limit(limits) < limits.triangles {
-        let needed = needed.saturating_mul(BYTES_OF_TRIANGLE);
-        RealizeError::Limit { what: "bytes of memory", needed, limit: limits.memory }
-    } else {
-        RealizeError::Limit { what: "triangles", needed, limit: limits.triangles }
-    }
 }
 
 /// What all shapes take together, counted on every thread. Whether a limit is passed depends on the sum alone

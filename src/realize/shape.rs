@@ -5,7 +5,7 @@ use glam::{DAffine3, DMat3};
 use super::extents::Extents;
 use super::field::dress_elements;
 use super::inherited::Inherited;
-use super::limit::{self, Cost};
+use super::limit::{self, Cost, Working};
 use super::mapping::lay;
 use super::material::{own_or, show_normals, source_of, split_by_element};
 use super::reach::bent;
@@ -100,8 +100,8 @@ impl<'a> Maker<'a> {
     /// [`sources`](super::sources) gives to their surface.
     pub(super) fn make(&self, handle: ShapeHandle, uv: bool) -> Result<Made, RealizeError> {
         let least = self.least[handle.0 as usize];
-        if least > limit::triangle_limit(&self.model.limits) {
-            return Err(limit::in_terms_of(least, &self.model.limits));
+        if least > Working::Surface.most(&self.model.limits) {
+            return Err(Working::Surface.refusal(least, &self.model.limits));
         }
         let mut first_source = 0;
         let rounding = single_rounding(self.extents.bounds(handle).reach());
@@ -197,6 +197,8 @@ impl<'a> Maker<'a> {
         // What rounding will add is taken off beforehand, as long as it leaves half.
         let aim = (tolerance - rounding).max(tolerance / 2.0);
         let detail = self.detail(shape, aim / stretch, (uv, level));
+        let working = Working::of(&shape.recipe);
+        let in_terms_of_limits = |error| self.in_terms_of_limits(working, error);
         let surface = |made: Tessellation| Made {
             mesh: made.mesh,
             wire: Wire::default(),
@@ -219,7 +221,7 @@ impl<'a> Maker<'a> {
             Recipe::Extrusion(extrusion) => extrude(extrusion, &detail),
             Recipe::Sweep(path) => sweep(path, &detail),
             Recipe::Patches { patches, materials } => {
-                let made = patchwork(patches, &detail).map_err(|error| self.in_terms_of_limits(error))?;
+                let made = patchwork(patches, &detail).map_err(in_terms_of_limits)?;
                 let mut made = surface(made);
                 if !materials.is_empty() {
                     let of =
@@ -233,7 +235,7 @@ impl<'a> Maker<'a> {
             Recipe::Perturbed(skin) => perturbed(skin, &detail),
             Recipe::Trimmed(shape) => trimmed(shape, &detail),
             Recipe::Implicit { surface: field, materials, colors, .. } => {
-                let made = field_surface(field, &detail).map_err(|error| self.in_terms_of_limits(error))?;
+                let made = field_surface(field, &detail).map_err(in_terms_of_limits)?;
                 let mut made = surface(made);
                 dress_elements(&mut made, &field.field, (materials, colors), shape.options.material);
                 return self.finished(shape, made);
@@ -249,7 +251,7 @@ impl<'a> Maker<'a> {
                     wire,
                     ..surface(Tessellation { mesh: Mesh::default(), deviation })
                 });
-                return self.finished(shape, made.map_err(|error| self.in_terms_of_limits(error))?);
+                return self.finished(shape, made.map_err(in_terms_of_limits)?);
             }
             Recipe::Assembly(_)
             | Recipe::Deformed { .. }
@@ -257,7 +259,7 @@ impl<'a> Maker<'a> {
             | Recipe::Solid(_)
             | Recipe::Subdivided(_) => Ok(Tessellation { mesh: Mesh::default(), deviation: Deviation::NONE }),
         };
-        let made = made.map_err(|error| self.in_terms_of_limits(error))?;
+        let made = made.map_err(in_terms_of_limits)?;
         self.finished(shape, surface(made))
     }
 
@@ -274,13 +276,13 @@ impl<'a> Maker<'a> {
                 Smoothing::Flat => 0.0,
             },
             uv,
-            triangle_limit: limit::triangle_limit(&self.model.limits),
+            triangle_limit: Working::of(&shape.recipe).most(&self.model.limits),
         }
     }
 
-    pub(super) fn in_terms_of_limits(&self, error: TessellateError) -> RealizeError {
+    pub(super) fn in_terms_of_limits(&self, working: Working, error: TessellateError) -> RealizeError {
         match error {
-            TessellateError::TooMany { needed, .. } => limit::in_terms_of(needed, &self.model.limits),
+            TessellateError::TooMany { needed, .. } => working.refusal(needed, &self.model.limits),
             error => error.into(),
         }
     }
@@ -366,18 +368,19 @@ impl<'a> Maker<'a> {
         };
         let first = *next_source;
         let mut made = self.part(of, share, next_source)?;
+        Working::Deformed.check(made.mesh.triangles.len(), &self.model.limits)?;
         let tolerance = self.coarsened(tolerance, inherited.level);
         let aim = (tolerance - inherited.rounding).max(tolerance / 2.0);
         let before = made.deviation.bound * stretch;
         let left = (aim - before).max(aim / 8.0);
-        let limit = limit::triangle_limit(&self.model.limits);
+        let limit = Working::Deformed.most(&self.model.limits);
         // The sources of the shape count on after those before it.
         let mut periods = vec![(f64::INFINITY, f64::INFINITY); first as usize];
         super::bent::periods(self.model, of, &mut periods);
         let subject = Deformed { mesh: made.mesh, wire: made.wire };
         let (subject, deviation) =
             deform(subject, map, &periods, left, limit).map_err(|error| match error {
-                DeformError::Tessellate(error) => self.in_terms_of_limits(error),
+                DeformError::Tessellate(error) => self.in_terms_of_limits(Working::Deformed, error),
                 error => RealizeError::Deform(error),
             })?;
         (made.mesh, made.wire) = (subject.mesh, subject.wire);

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use super::inherited::Inherited;
-use super::limit::Cost;
+use super::limit::{Cost, Working};
 use super::shape::{Made, Maker, cost, flatten, join};
 use super::{RealizeError, bent};
 use crate::geometry::mesh::{self, Mesh, Wire};
@@ -133,6 +133,7 @@ impl Work<'_> {
         how: &Combination,
         periods: &[(f64, f64)],
     ) -> Result<Made, RealizeError> {
+        Working::Combined.check(whole.mesh.triangles.len(), &self.model().limits)?;
         let check = self.checks();
         let making = Making { resolution: self.resolution(), periods, check: &check };
         let stock = Stock { mesh: std::mem::take(&mut whole.mesh), parts };
@@ -210,6 +211,8 @@ impl Work<'_> {
         let (whole, _) = self.parts(self.inherited, &mut 0)?;
         let corners = whole.mesh.points.iter().chain(whole.wire.points.iter().map(|point| &point.position));
         let all: Vec<_> = corners.chain(points).copied().collect();
+        // A smooth surface has two triangles for each of its points.
+        Working::Wrapped.check(2 * all.len(), &self.model().limits)?;
         let mesh = solid::hull(&all, self.crease_angle()).map_err(|fault| self.fault(fault))?;
         Ok(self.derived(mesh, source, &whole, whole.deviation))
     }
@@ -252,6 +255,7 @@ impl Work<'_> {
         tolerance: f64,
         before: Deviation,
     ) -> Result<(Mesh, Deviation), RealizeError> {
+        Working::Combined.check(mesh.triangles.len(), &self.model().limits)?;
         let aim = (tolerance - before.bound - self.inherited.rounding).max(tolerance / 4.0);
         let check = self.checks()[0];
         let details = (self.resolution(), self.crease_angle(), check);

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::inherited::Inherited;
-use super::limit;
+use super::limit::Working;
 use super::shape::{Made, Maker, cost, flatten};
 use super::vertex_color::color_polygons;
 use super::{Faces, Level, Note, RealizeError};
@@ -45,10 +45,10 @@ impl Maker<'_> {
             triangulate: recipe.triangulate,
         };
         let refuse = |fault| match fault {
-            SubdivideFault::TooMany { needed, .. } => limit::in_terms_of(needed, &self.model.limits),
+            SubdivideFault::TooMany { needed, .. } => Working::Subdivided.refusal(needed, &self.model.limits),
             fault => RealizeError::Subdivide { shape: handle, cage: recipe.cage, fault },
         };
-        let most = limit::triangle_limit(&self.model.limits);
+        let most = Working::Subdivided.most(&self.model.limits);
         let mut refined = subdivide(&cage, &options, most).map_err(refuse)?;
         if recipe.levels.is_none() && refined.levels < self.levels {
             options.aim = Aim::Levels(self.levels);

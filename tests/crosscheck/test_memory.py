@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -15,22 +13,13 @@ COUNT = 6
 HEAVY = "[shape.s]\ntolerance = 0.00001\n[shape.s.sphere]\nradius = RADIUS\n"
 LIGHT = "[shape.s.box]\nsize = [1, 1, 1]\n"
 MEGABYTE = 1_000_000
-STARTER = """
-import os, sys
-_, status, used = os.wait4(os.posix_spawn(sys.argv[1], sys.argv[1:], os.environ), 0)
-print(used.ru_maxrss)
-sys.exit(os.waitstatus_to_exitcode(status))
-"""
 
 
 def peak(kiln: Kiln, *words: str) -> int:
-    """Bakes, and gives the bytes of memory that the process had at its most.
-
-    The system counts in what had started it, before it became itself: so a small program starts it.
-    """
-    line = [sys.executable, "-S", "-c", STARTER, str(kiln.program), "bake", "--quiet", *words]
-    done = subprocess.run(line, cwd=kiln.folder, stdout=subprocess.PIPE, text=True, check=True)
-    return int(done.stdout) * 1024
+    """Bakes, and gives the bytes of memory that the process had at its most."""
+    code, most, told = kiln.measured("bake", *words)
+    assert code == 0, told
+    return most
 
 
 def outputs(folder: Path) -> dict[str, bytes]:

@@ -212,6 +212,12 @@ pub struct Formula {
 const INLINE: usize = 16;
 
 impl Formula {
+    /// How many operations one evaluation takes.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.operations.len() as u64
+    }
+
     /// How many variables it has.
     #[must_use]
     pub fn variables(&self) -> usize {

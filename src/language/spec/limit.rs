@@ -27,6 +27,29 @@ pub struct Limits {
     pub steps: u64,
 }
 
+/// Bytes of a pixel while a picture is read and written: as it is unpacked, and packed again.
+const BYTES_OF_PIXEL: u64 = 8;
+/// Bytes of a sample of a map of heights, with the ranges over parts of the map: what the peak of a process grows by.
+const BYTES_OF_SAMPLE: u64 = 13;
+
+impl Limits {
+    /// Most pixels of one image, for the memory too.
+    #[must_use]
+    pub const fn pixels(&self) -> u64 {
+        least(self.image_pixels, self.memory / BYTES_OF_PIXEL)
+    }
+
+    /// Most samples of one map of heights: as many as pixels of an image, for the memory too.
+    #[must_use]
+    pub const fn samples(&self) -> u64 {
+        least(self.image_pixels, self.memory / BYTES_OF_SAMPLE)
+    }
+}
+
+const fn least(one: u64, other: u64) -> u64 {
+    if one < other { one } else { other }
+}
+
 impl Default for Limits {
     fn default() -> Self {
         Self {

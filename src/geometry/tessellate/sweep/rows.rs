@@ -71,7 +71,14 @@ pub(super) fn cut(
         SurfaceDensity::Grid { v, .. } => discretize(&traced, Density::Count(v), limit)?,
         SurfaceDensity::Tolerance(_) => {
             let cells: u64 = columns.iter().map(|columns| columns.len() as u64 - 1).sum();
-            discretize(&traced, Density::Tolerance(aim), limit / (2 * cells) + 1)?
+            // Each station is a row of two triangles a cell.
+            let in_triangles = |error| match error {
+                TessellateError::TooMany { needed, .. } => {
+                    TessellateError::TooMany { needed: needed.saturating_mul(2 * cells), limit }
+                }
+                error => error,
+            };
+            discretize(&traced, Density::Tolerance(aim), limit / (2 * cells) + 1).map_err(in_triangles)?
         }
     };
     let stations = clear_of_corners(surface, stations, columns);
