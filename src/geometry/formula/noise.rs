@@ -45,7 +45,7 @@ fn fade<T: Algebra>(t: T) -> [T; 3] {
     [times(T::power(t, 3.0), inner), scaled(30.0, both), bend]
 }
 
-impl<T: Algebra> Cell<T> {
+impl<T: Cells> Cell<T> {
     fn new(seed: f64, corner: [f64; 2], place: [T; 2]) -> Self {
         let at = |dx: f64, dy: f64| noise_gradient(seed, corner[0] + dx, corner[1] + dy);
         Self { place, gradients: [at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0), at(1.0, 1.0)] }
@@ -62,7 +62,7 @@ impl<T: Algebra> Cell<T> {
         let ramps = [ramp(0, 0.0, 0.0), ramp(1, 1.0, 0.0), ramp(2, 0.0, 1.0), ramp(3, 1.0, 1.0)];
         let by = |part: fn((f64, f64)) -> f64| self.gradients.map(|gradient| T::constant(part(gradient)));
         let (by_x, by_y) = (by(|gradient| gradient.0), by(|gradient| gradient.1));
-        let (s, t) = (fade(u), fade(v));
+        let (s, t) = (T::fades(u), T::fades(v));
         let corner = |ramps: &[T; 4]| {
             let across = minus(ramps[1], ramps[0]);
             let along = minus(ramps[2], ramps[0]);
@@ -95,6 +95,11 @@ impl<T: Algebra> Cell<T> {
 pub trait Cells: Algebra {
     /// The first derivatives of noise by x and y, then the second ones: xx, xy, yy.
     fn slopes(seed: f64, x: Self, y: Self) -> [Self; 5];
+
+    /// The quintic fade of a place in a cell, 0 to 1, with its two derivatives.
+    fn fades(t: Self) -> [Self; 3] {
+        fade(t)
+    }
 }
 
 impl Cells for f64 {
@@ -109,17 +114,63 @@ impl Cells for Interval {
         let [_, slope, bend] = GREATEST;
         let quality = x.quality.min(y.quality);
         let greatest = [slope, slope, bend, bend, bend];
-        let bounds = over_cells(seed, x, y, |bumps| bumps.slopes);
+        let bounds = over_cells(seed, x, y, |cell| {
+            let (bumps, middle) = (cell.bumps(), cell.middle().bumps());
+            let [by_x, by_y, xx, xy, yy] = bumps.slopes;
+            let near = |own: Self, middle: f64, steepness: [Self; 2]| cell.near(own, middle, steepness);
+            [near(by_x, middle.slopes[0], [xx, xy]), near(by_y, middle.slopes[1], [xy, yy]), xx, xy, yy]
+        });
         bounds
             .unwrap_or_else(|| greatest.map(|size| Self::new(-size, size)))
             .map(|bound| bound.at_best(quality))
+    }
+
+    /// The fade grows, its slope rises to the middle and falls behind it, and its bend has its greatest sizes at
+    /// (3 +- root 3) / 6: so each is bounded by its values at the ends and there.
+    fn fades(t: Self) -> [Self; 3] {
+        const TURNS: [f64; 2] = [0.211_324_865_405_187_12, 0.788_675_134_594_812_9];
+        let over = |index: usize, turns: &[f64]| {
+            let ends = [t.low, t.high].into_iter();
+            let all = ends.chain(turns.iter().copied().filter(|turn| t.contains(*turn)));
+            let values = all.map(|place| fade(place)[index]);
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                (low.min(value), high.max(value))
+            });
+            Self::new(low - ROUNDING, high + ROUNDING).at_best(t.quality)
+        };
+        [over(0, &[]), over(1, &[0.5]), over(2, &TURNS)]
+    }
+}
+
+/// More than rounding does to a fade, to its derivatives, or to the value and the slope of noise at one place.
+const ROUNDING: f64 = 1e-13;
+
+impl Cell<Interval> {
+    /// The same cell seen from the middle of the box.
+    fn middle(&self) -> Cell<f64> {
+        Cell { place: self.place.map(|side| f64::midpoint(side.low, side.high)), gradients: self.gradients }
+    }
+
+    /// A bound on a number by its value in the middle and its derivatives, where that is better than its own: it closes in
+    /// with the square of the size of the box.
+    fn near(&self, own: Interval, middle: f64, steepness: [Interval; 2]) -> Interval {
+        let half = self.place.map(|side| {
+            let half = (side.high - side.low) / 2.0 + ROUNDING;
+            Interval::new(-half, half)
+        });
+        let around = Interval::new(middle - ROUNDING, middle + ROUNDING);
+        let mean = plus(around, plus(times(steepness[0], half[0]), times(steepness[1], half[1])));
+        Interval::new(own.low.max(mean.low), own.high.min(mean.high))
     }
 }
 
 /// Bounds on noise over a box.
 pub(super) fn noise_over(seed: f64, x: Interval, y: Interval) -> Interval {
     let quality = x.quality.min(y.quality);
-    let bounds = over_cells(seed, x, y, |bumps| [bumps.value]);
+    let bounds = over_cells(seed, x, y, |cell| {
+        let bumps = cell.bumps();
+        [cell.near(bumps.value, cell.middle().bumps().value, [bumps.slopes[0], bumps.slopes[1]])]
+    });
     let [bound] = bounds.unwrap_or([Interval::new(-GREATEST[0], GREATEST[0])]);
     bound.at_best(quality)
 }
@@ -129,7 +180,7 @@ fn over_cells<const M: usize>(
     seed: f64,
     x: Interval,
     y: Interval,
-    bounds: impl Fn(Bumps<Interval>) -> [Interval; M],
+    bounds: impl Fn(&Cell<Interval>) -> [Interval; M],
 ) -> Option<[Interval; M]> {
     let cells = |side: Interval| {
         let (first, last) = (side.low.floor(), side.high.floor());
@@ -146,7 +197,7 @@ fn over_cells<const M: usize>(
         for row in 0..rows {
             let corner = [left + column as f64, bottom + row as f64];
             let cell = Cell::new(seed, corner, [part(x, corner[0]), part(y, corner[1])]);
-            let found = bounds(cell.bumps());
+            let found = bounds(&cell);
             all = Some(match all {
                 None => found,
                 Some(before) => core::array::from_fn(|index| before[index].hull(found[index])),
