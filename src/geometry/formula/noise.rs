@@ -128,7 +128,7 @@ impl Cells for Interval {
     /// The fade grows, its slope rises to the middle and falls behind it, and its bend has its greatest sizes at
     /// (3 +- root 3) / 6: so each is bounded by its values at the ends and there.
     fn fades(t: Self) -> [Self; 3] {
-        const TURNS: [f64; 2] = [0.211_324_865_405_187_12, 0.788_675_134_594_812_9];
+        const TURNS: [f64; 2] = [0.211_324_865_405_187_13, 0.788_675_134_594_812_9];
         let over = |index: usize, turns: &[f64]| {
             let ends = [t.low, t.high].into_iter();
             let all = ends.chain(turns.iter().copied().filter(|turn| t.contains(*turn)));
