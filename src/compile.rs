@@ -258,7 +258,7 @@ impl Made<'_> {
         }
         let Realized { scene, shapes, loose, unseen, notes, .. } = &realized;
         let mut found: Vec<Diagnostic> =
-            notes.iter().map(|(shape, note)| noticed(built, *shape, note)).collect();
+            notes.iter().filter_map(|(shape, note)| noticed(built, *shape, note)).collect();
         found.extend(loose.iter().map(|one| motion::loose(built, one)));
         found.extend(unseen.iter().map(|(clip, material)| motion::unseen(built, *clip, material)));
         found.extend(beyond_tolerance(scene, shapes, built));
@@ -274,7 +274,7 @@ impl Made<'_> {
         mut warnings: Vec<Diagnostic>,
     ) -> Result<Vec<Compiled>, Vec<Diagnostic>> {
         let Self { built, spec, .. } = *self;
-        let Surfaces { realized: Realized { mut scene, mut shapes, .. }, share } = surfaces;
+        let Surfaces { realized: Realized { mut scene, mut shapes, notes, .. }, share } = surfaces;
         let (rounding, order) = match profile {
             profile if profile.is_compressed() => (Rounding::Coarse(share), Order::Packing),
             profile if profile.is_quantized() => (Rounding::Fine(share), Order::Drawing),
@@ -303,8 +303,9 @@ impl Made<'_> {
         if profile.draws_instances() {
             scenes.iter_mut().for_each(optimize::fold_copies);
         }
-        let file =
-            |(level, scene)| self.file(scene, &shapes, (profile, level), std::mem::take(&mut warnings));
+        let file = |(level, scene)| {
+            self.file(scene, (&shapes, &notes), (profile, level), std::mem::take(&mut warnings))
+        };
         scenes.into_iter().enumerate().map(file).collect()
     }
 
@@ -312,7 +313,7 @@ impl Made<'_> {
     fn file(
         &self,
         scene: scene::Scene,
-        shapes: &[ShapeHandle],
+        (shapes, notes): (&[ShapeHandle], &[(ShapeHandle, realize::Note)]),
         (profile, level): (Profile, usize),
         mut warnings: Vec<Diagnostic>,
     ) -> Result<Compiled, Vec<Diagnostic>> {
@@ -344,6 +345,7 @@ impl Made<'_> {
                 profile,
                 file: &file,
                 measure: options.measure,
+                notes,
             };
             // A document speaks of the finest level.
             let speaks = level == 0 && !options.draft;

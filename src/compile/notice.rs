@@ -20,11 +20,11 @@ struct Words {
     help: Option<&'static str>,
 }
 
-/// The warning for a note: at the face, where the document writes faces, or else at the shape.
-pub(super) fn noticed(built: &Built, shape: ShapeHandle, note: &Note) -> Diagnostic {
+/// The warning for a note of faces: at the face, where the document writes faces, or else at the shape.
+pub(super) fn noticed(built: &Built, shape: ShapeHandle, note: &Note) -> Option<Diagnostic> {
     let name = &built.model.shape(shape).name;
     let written = written_faces(built, shape);
-    let (faces, words) = words(note, !written.is_empty());
+    let (faces, words) = words(note, !written.is_empty())?;
     let message = match faces.count {
         1 => format!("shape `{name}`: face {} {}", faces.first, words.one),
         count => format!("shape `{name}`: {count} faces {}, the first is face {}", words.many, faces.first),
@@ -34,21 +34,22 @@ pub(super) fn noticed(built: &Built, shape: ShapeHandle, note: &Note) -> Diagnos
         Some(face) => report.at(*face, "this face"),
         None => report.at(place(built, shape), "this shape"),
     };
-    words.help.into_iter().fold(report, Diagnostic::help)
+    Some(words.help.into_iter().fold(report, Diagnostic::help))
 }
 
 fn written_faces(built: &Built, shape: ShapeHandle) -> &[Span] {
     built.faces.get(shape.0 as usize).map_or(&[], Vec::as_slice)
 }
 
-fn words(note: &Note, written: bool) -> (&Faces, Words) {
-    match note {
+fn words(note: &Note, written: bool) -> Option<(&Faces, Words)> {
+    Some(match note {
         Note::Dropped(faces) if written => (faces, DROPPED),
         Note::Dropped(faces) => (faces, Words { code: Code::ImportNote, ..DROPPED }),
         Note::Flat(faces) => (faces, FLAT),
         Note::Crossing(faces) => (faces, CROSSING),
         Note::Triangulated(faces) => (faces, TRIANGULATED),
-    }
+        Note::Classes(_) => return None,
+    })
 }
 
 const TRIANGULATED: Words = Words {

@@ -68,12 +68,11 @@ impl Working {
 
     /// A surface that was refused for its triangles, said in terms of the limit that was meant.
     pub(super) fn refusal(self, needed: u64, limits: &Limits) -> RealizeError {
-        if self.most(limits) < limits.triangles {
-            let needed = needed.saturating_mul(self.bytes());
-            RealizeError::Limit { what: "bytes of memory", needed, limit: limits.memory }
-        } else {
-            RealizeError::Limit { what: "triangles", needed, limit: limits.triangles }
+        if needed > limits.triangles {
+            return RealizeError::Limit { what: "triangles", needed, limit: limits.triangles };
         }
+        let needed = needed.saturating_mul(self.bytes());
+        RealizeError::Limit { what: "bytes of memory", needed, limit: limits.memory }
     }
 
     /// Refuses to make something of triangles that are there already, where that takes more memory than it may.

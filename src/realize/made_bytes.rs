@@ -43,6 +43,11 @@ pub(super) fn encode(made: &Made, sources: u32, met: &Met) -> Option<Vec<u8>> {
             Note::Flat(faces) => (1, faces),
             Note::Crossing(faces) => (2, faces),
             Note::Triangulated(faces) => (3, faces),
+            Note::Classes(counts) => {
+                out.byte(4);
+                counts.iter().for_each(|count| out.word(*count));
+                continue;
+            }
         };
         out.byte(kind);
         out.word(faces.first);
@@ -106,6 +111,9 @@ pub(super) fn decode(bytes: &[u8], met: &Met) -> Option<(Made, u32)> {
     let notes = from.list(17, |from| {
         let shape = *met.shapes.get(from.word()? as usize)?;
         let (kind, first) = (from.byte()?, from.word()?);
+        if kind == 4 {
+            return Some((shape, Note::Classes([first, from.word()?, from.word()?, from.word()?])));
+        }
         let faces = Faces { first, count: usize::try_from(from.long()?).ok()? };
         let note = match kind {
             0 => Note::Dropped(faces),
@@ -290,7 +298,10 @@ mod tests {
             materials: vec![None, Some(MaterialHandle(9))],
             deviation: Deviation { bound: 0.1, evidence: Evidence::Sampled },
             tolerance: Some(0.3),
-            notes: vec![(ShapeHandle(4), Note::Crossing(Faces { first: 3, count: 5 }))],
+            notes: vec![
+                (ShapeHandle(4), Note::Crossing(Faces { first: 3, count: 5 })),
+                (ShapeHandle(4), Note::Classes([9, 1, 2, 8])),
+            ],
             levels: 2,
         }
     }

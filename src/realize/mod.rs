@@ -308,6 +308,8 @@ pub enum Note {
     Crossing(Faces),
     /// Faces of a cage that were cut into triangles for the scheme; the first is not told.
     Triangulated(Faces),
+    /// Vertices of a cage that are smooth, at the end of a crease, on creases, and corners: a fact, no warning.
+    Classes([u32; 4]),
 }
 
 /// Some faces of a shape.

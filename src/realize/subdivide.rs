@@ -75,6 +75,7 @@ impl Maker<'_> {
             notes: (refined.triangulated > 0)
                 .then(|| (handle, note(refined.triangulated)))
                 .into_iter()
+                .chain([(handle, Note::Classes(refined.classes))])
                 .collect(),
             levels: if recipe.levels.is_none() { refined.levels } else { 0 },
         };

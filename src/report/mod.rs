@@ -5,6 +5,7 @@
 //! run to run, and no number depends on the machine or on the number of threads.
 
 mod assertion;
+mod cages;
 mod colliders;
 mod deviation;
 pub mod facts;
@@ -20,6 +21,7 @@ mod quadrics;
 mod surfaces;
 
 pub use assertion::{Check, Fault};
+pub use cages::CageFacts;
 pub use colliders::{ColliderFacts, PartsFacts};
 pub use deviation::{deviation_maps, measure_deviation};
 pub use heights::HeightFacts;
@@ -43,6 +45,7 @@ use crate::geometry::tessellate::Evidence;
 use crate::gltf::{Geometry, Indices, Profile, Read, ReadError, Written, WrittenGeometry, read};
 use crate::model::{Model, ShapeHandle};
 use crate::packing::{UnpackError, unpacked};
+use crate::realize::Note;
 use facts::{Box3, FactsError, LineFacts, MeshFacts, measure_lines};
 use thiserror::Error;
 
@@ -98,6 +101,9 @@ pub struct Report {
     /// How the surfaces of perturbed patches were made.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub perturbed: IndexMap<String, PerturbedFacts>,
+    /// What the vertices of each cage are.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub cages: IndexMap<String, CageFacts>,
     /// Each assertion of the document that holds.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub assertions: Vec<Check>,
@@ -291,6 +297,8 @@ pub struct About<'a> {
     pub file: &'a str,
     /// Whether the deviation is measured by dense sampling.
     pub measure: bool,
+    /// What was noticed while shapes were made.
+    pub notes: &'a [(ShapeHandle, Note)],
 }
 
 /// Why a file cannot be measured: a bug of the writer, or more triangles than can be counted.
@@ -358,6 +366,7 @@ pub fn measure(
         heights: heights::heights(&file, written, model, shapes)?,
         networks: surfaces::networks(model),
         perturbed: perturbed::perturbed(model),
+        cages: cages::cages(model, about.notes),
         assertions: Vec::new(),
     })
 }

@@ -99,3 +99,29 @@ fn creases_of_a_file_are_those_of_the_document() {
     let refused = bake(cube, "creases = [{ imported = true }]").expect_err("there are none").render(false);
     assert!(refused.contains("says of no edge and of no vertex"), "{refused}");
 }
+
+/// A die with sharp edges that are chosen, in a group: how many of its corners are smooth, darts, creases and corners.
+fn classes(edges: &str, more: &str) -> [u32; 4] {
+    let text = format!(
+        "[shape.g.group]
+of = [\"s\"]
+[shape.s.subdivide]
+cage = {{ mesh = {{ points = [[-1, -1, -1], [1, -1, -1], [1, -1, 1], [-1, -1, 1], [-1, 1, -1], [1, 1, -1], [1, 1, 1], [-1, 1, 1]], faces = [[0, 1, 2, 3], [7, 6, 5, 4], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]] }} }}
+levels = 2
+creases = [{{ edges = {edges} }}]
+{more}
+[node.n]
+shape = \"g\"
+"
+    );
+    let facts = bake(&text).report().cages["s"];
+    [facts.smooth, facts.dart, facts.crease, facts.corner]
+}
+
+#[test]
+fn the_report_counts_the_classes_of_the_vertices_of_a_cage() {
+    assert_eq!(classes("[[0, 1]]", ""), [6, 2, 0, 0], "a crease of one edge ends at two darts");
+    assert_eq!(classes("[[0, 1], [1, 2], [2, 3], [3, 0]]", ""), [4, 0, 4, 0], "a loop");
+    assert_eq!(classes("[[0, 1], [1, 2], [1, 5]]", ""), [4, 3, 0, 1], "three edges meet at a corner");
+    assert_eq!(classes("[[0, 1]]", "corners = [{ vertex = 6 }]"), [5, 2, 0, 1], "a sharp vertex");
+}
