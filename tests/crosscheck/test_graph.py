@@ -116,7 +116,11 @@ def test_what_is_wrong_is_told(kiln: Kiln) -> None:
     assert kiln.run("graph", "none.toml").returncode == 3
 
 
-@pytest.mark.parametrize("path", sorted(ROOT.glob("specs/*/*.toml"))[::12], ids=lambda path: path.stem)
+# Some hold nothing but what others include.
+SHOWN = [path for path in sorted(ROOT.glob("specs/*/*.toml")) if "[shape." in path.read_text(encoding="utf-8")]
+
+
+@pytest.mark.parametrize("path", SHOWN[::12], ids=lambda path: path.stem)
 def test_documents_of_the_gallery_have_one(kiln: Kiln, path: Path) -> None:
     done = kiln.run("graph", str(path), "--root", str(ROOT / "specs"), "--as", "json")
     assert done.returncode == 0, done.stderr
