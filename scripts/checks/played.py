@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from checks.document import Document, local_matrix
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -22,43 +23,39 @@ def asked(path: Path) -> dict[str, Any]:
     return json.loads(report.read_text(encoding="utf-8")).get("clips", {}) if report.exists() else {}
 
 
-def clips(path: Path) -> dict[str, list[dict[str, Any]]]:
-    """The poses of every clip that the report names."""
-    questions = asked(path)
-    if not questions:
-        return {}
+def questions(path: Path, what: str) -> Iterator[tuple[str, dict[str, Any], dict[str, Any], Stage]]:
+    """Each clip of the report that asks so, with its name, as it stands in the file, and the file to play it."""
+    told = {name: clip for name, clip in asked(path).items() if clip.get(what)}
+    if not told:
+        return
     stage = Stage(Document(path))
     named = {one.get("name", ""): one for one in stage.document.json.get("animations", [])}
+    for name, clip in told.items():
+        if name in named:
+            yield name, clip, named[name], stage
+
+
+def clips(path: Path) -> dict[str, list[dict[str, Any]]]:
+    """The poses of every clip that the report names."""
     return {
-        name: [stage.pose(named[name], pose) for pose in clip["poses"]]
-        for name, clip in questions.items()
-        if name in named
+        name: [stage.pose(animation, pose) for pose in clip["poses"]]
+        for name, clip, animation, stage in questions(path, "poses")
     }
 
 
 def reaches(path: Path) -> dict[str, dict[str, list[float]]]:
     """For each clip and joint that reaches something the distances from its places, frame by frame."""
-    questions = {name: clip for name, clip in asked(path).items() if clip.get("reaches")}
-    if not questions:
-        return {}
-    stage = Stage(Document(path))
-    named = {one.get("name", ""): one for one in stage.document.json.get("animations", [])}
     return {
-        name: {joint: stage.distances(named[name], joint, task) for joint, task in clip["reaches"].items()}
-        for name, clip in questions.items()
+        name: {joint: stage.distances(animation, joint, task) for joint, task in clip["reaches"].items()}
+        for name, clip, animation, stage in questions(path, "reaches")
     }
 
 
 def drivers(path: Path) -> dict[str, dict[str, dict[str, Any]]]:
     """For each clip and weight that follows a joint the angles and weights at the times told, and how far it is off."""
-    questions = {name: clip for name, clip in asked(path).items() if clip.get("drivers")}
-    if not questions:
-        return {}
-    stage = Stage(Document(path))
-    named = {one.get("name", ""): one for one in stage.document.json.get("animations", [])}
     return {
-        name: {of: stage.driven(named[name], task, clip["duration"]) for of, task in clip["drivers"].items()}
-        for name, clip in questions.items()
+        name: {of: stage.driven(animation, task, clip["duration"]) for of, task in clip["drivers"].items()}
+        for name, clip, animation, stage in questions(path, "drivers")
     }
 
 

@@ -6,15 +6,11 @@ use glam::{DAffine3, DVec4};
 use super::Builder;
 use super::frames::unique;
 use super::gltf::keys_of;
-use super::import::{axes_between, beside, default_up};
-use crate::geometry::mesh;
-use crate::import::ImportOptions;
+use super::import::{axes_between, default_up};
 use crate::import::gltf::{self, Channel, Clip, Node, PropertyChannel, Track};
 use crate::language::source::Span;
 use crate::language::spec::{FilePath, Frames, Import};
-use crate::model::{
-    ClipTrack, MaterialHandle, Morph, PropertyTrack, Recipe, Shape, ShapeHandle, Space, State, Target,
-};
+use crate::model::{ClipTrack, MaterialHandle, PropertyTrack, Recipe, ShapeHandle, Space, Target};
 use crate::motion::{Course, Law, Property};
 
 /// What of files other files' motions may move.
@@ -56,14 +52,7 @@ impl Builder<'_> {
             return None;
         }
         // The shape was read, so that this succeeds again.
-        let bytes = self.bytes_of(&import.file)?;
-        let options = ImportOptions {
-            group: import.group.as_ref().map(|group| group.value.clone()),
-            weld: None,
-            most: self.model.limits.triangles,
-        };
-        let read = gltf::read_weighted(&bytes, &options, &mut beside(self.files, &import.file.value));
-        let found = read.map_err(|error| self.refused(&import.file, &error)).ok()?;
+        let found = self.gltf_weighted(import)?;
         if found.states.is_empty() {
             return None;
         }
@@ -85,23 +74,7 @@ impl Builder<'_> {
             names.push(target.clone());
             let mut weights = still.clone();
             weights[own] = 1.0;
-            let handle = ShapeHandle(mesh::index(self.model.shapes.len()));
-            let made = Shape {
-                name: format!("{name}.{target}"),
-                recipe: recipe(&weights),
-                options: base.options.clone(),
-            };
-            self.model.shapes.push(made);
-            self.places.push(span);
-            self.faces.push(Vec::new());
-            self.model.morphs.push(Morph {
-                name: target,
-                shape,
-                weight: state.weight,
-                driver: None,
-                state: State::Shape(handle),
-            });
-            self.morph_places.push(span);
+            self.push_state((shape, span), (name, target), recipe(&weights), state.weight);
             let file = import.file.value.resolved.clone();
             self.from_files.states.push(Known { file, node: state.node, target: state.target, shape, own });
         }

@@ -77,6 +77,24 @@ impl<'a> Builder<'a> {
         (0..self.model.nodes.len()).filter(|node| self.model.nodes[*node].shape == Some(shape)).collect()
     }
 
+    /// A state of a shape from a file, which is a shape that nothing shows.
+    pub(super) fn push_state(
+        &mut self,
+        (shape, span): (ShapeHandle, Span),
+        (name, target): (&str, String),
+        recipe: Recipe,
+        weight: f64,
+    ) {
+        let handle = ShapeHandle(mesh::index(self.model.shapes.len()));
+        let options = self.model.shape(shape).options.clone();
+        self.model.shapes.push(Shape { name: format!("{name}.{target}"), recipe, options });
+        self.places.push(span);
+        self.faces.push(Vec::new());
+        let state = State::Shape(handle);
+        self.model.morphs.push(Morph { name: target, shape, weight, driver: None, state });
+        self.morph_places.push(span);
+    }
+
     fn frames_of(
         &mut self,
         name: &str,
@@ -110,19 +128,7 @@ impl<'a> Builder<'a> {
             let mut mesh = found.at(number);
             mesh.transform(&map);
             let recipe = Recipe::Polygons { mesh, materials: materials.clone() };
-            let handle = ShapeHandle(mesh::index(self.model.shapes.len()));
-            let state = Shape { name: format!("{name}.{target}"), recipe, options: base.options.clone() };
-            self.model.shapes.push(state);
-            self.places.push(span);
-            self.faces.push(Vec::new());
-            self.model.morphs.push(Morph {
-                name: target,
-                shape,
-                weight: 0.0,
-                driver: None,
-                state: State::Shape(handle),
-            });
-            self.morph_places.push(span);
+            self.push_state((shape, span), (name, target), recipe, 0.0);
         }
         Some(Played { shape, import, sequences, targets, tags, span })
     }

@@ -67,13 +67,8 @@ impl Builder<'_> {
         Some(rooted(rig.joints.iter().enumerate().map(plain).collect()))
     }
 
-    /// The joints of a file and its weights for the points of a shape.
-    pub(super) fn gltf_weights(
-        &mut self,
-        import: &spec::Import,
-        shape: &Sp<spec::ShapeName>,
-    ) -> Option<NamedWeights> {
-        let (_, rig) = self.gltf_file(&import.file)?;
+    /// The meshes of a file as they are written, with the weights of their points and their states.
+    pub(super) fn gltf_weighted(&mut self, import: &spec::Import) -> Option<gltf::Weighted> {
         let bytes = self.bytes_of(&import.file)?;
         let options = ImportOptions {
             group: import.group.as_ref().map(|group| group.value.clone()),
@@ -81,7 +76,17 @@ impl Builder<'_> {
             most: self.model.limits.triangles,
         };
         let read = gltf::read_weighted(&bytes, &options, &mut beside(self.files, &import.file.value));
-        let found = read.map_err(|error| self.refused(&import.file, &error)).ok()?;
+        read.map_err(|error| self.refused(&import.file, &error)).ok()
+    }
+
+    /// The joints of a file and its weights for the points of a shape.
+    pub(super) fn gltf_weights(
+        &mut self,
+        import: &spec::Import,
+        shape: &Sp<spec::ShapeName>,
+    ) -> Option<NamedWeights> {
+        let (_, rig) = self.gltf_file(&import.file)?;
+        let found = self.gltf_weighted(import)?;
         if found.weights.iter().all(Vec::is_empty) {
             return self.no_weights(shape);
         }

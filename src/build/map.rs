@@ -93,7 +93,11 @@ impl Builder<'_> {
             return Some(());
         }
         let message = format!("this map has {columns} x {rows} samples, more than the limit of {limit}");
-        self.report(Diagnostic::error(Code::LimitPassed, message).at(span, "too many"));
+        self.report(
+            Diagnostic::error(Code::LimitPassed, message)
+                .at(span, "too many")
+                .help("write fewer columns and rows; where [limits] lowers `image-pixels` or `memory`, write more there"),
+        );
         None
     }
 

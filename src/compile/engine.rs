@@ -92,11 +92,10 @@ pub(super) fn unread(profile: Profile, spec: &Spec) -> Vec<Diagnostic> {
 
 /// Tracks of properties that an engine's loader does not play, the first of each clip.
 fn unread_properties(profile: Profile, engine: &str, spec: &Spec) -> Vec<Diagnostic> {
-    if profile == Profile::Babylon {
-        return spec.clips.values().filter_map(mistaken_by_babylon).collect();
-    }
-    if plays_properties(profile) {
-        return Vec::new();
+    match profile {
+        Profile::Babylon => return spec.clips.values().filter_map(mistaken_by_babylon).collect(),
+        Profile::Blender | Profile::Godot => return Vec::new(),
+        _ => {}
     }
     let how =
         if profile.reads_properties() { "plays none" } else { "refuses files with some; they are left out" };
@@ -114,7 +113,7 @@ fn unread_properties(profile: Profile, engine: &str, spec: &Spec) -> Vec<Diagnos
 }
 
 /// The first track of a clip that Babylon.js plays as something else: its loader knows metal twice, of which the second is
-/// meant to be roughness (`KHR_animation_pointer.data.ts`, seen in 9.28 by what it shows).
+/// meant to be roughness (`KHR_animation_pointer.data.ts` of 9.28).
 fn mistaken_by_babylon(clip: &Definition<Clip>) -> Option<Diagnostic> {
     let mut paths = clip.value.track.iter().filter_map(|track| track.path.as_ref());
     let path = paths.find(|path| matches!(path.value, MotionPath::Metallic | MotionPath::Roughness))?;
@@ -128,11 +127,6 @@ fn mistaken_by_babylon(clip: &Definition<Clip>) -> Option<Diagnostic> {
             "change it in the game, or change `color`, `emissive` or a property of clearcoat in its place",
         ),
     )
-}
-
-/// Whether the loader of an engine plays changes of properties.
-fn plays_properties(profile: Profile) -> bool {
-    profile.engine().is_none() || matches!(profile, Profile::Babylon | Profile::Blender | Profile::Godot)
 }
 
 /// Attributes of names of their own that an engine leaves out, or mixes up.

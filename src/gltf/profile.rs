@@ -3,7 +3,7 @@
 /// An output profile: for everyone, or for one engine.
 ///
 /// Engines read what their loaders of autumn 2026 read: Bevy 0.20, Godot 4, Unreal 5 (Interchange), Unity (glTFast), three.js
-/// r180, Babylon.js 8, Blender 4.5.
+/// r187, Babylon.js 9, Blender 4.5.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Profile {
     /// Floats; needs no extension. Every engine opens it, but for Bevy where clips change materials, lights or cameras: its reader

@@ -38,8 +38,6 @@ pub struct Written {
     pub animations: Vec<WrittenAnimation>,
     /// Bodies for physics.
     pub colliders: Vec<Collider>,
-    /// The meshes of the file that are such bodies.
-    pub collider_meshes: std::ops::Range<usize>,
     /// The node that carries all others, where the file turns, moves or scales the model.
     pub root: Option<usize>,
     /// The levels of detail of each mesh that has some, the finest first.
@@ -75,9 +73,7 @@ pub struct WrittenAnimation {
 pub struct WrittenGeometry {
     /// Name of the shape.
     pub name: String,
-    /// The first mesh of the file that shows it.
-    pub mesh: usize,
-    /// All meshes of the file that show it; where nodes show it with several materials, there are several.
+    /// The meshes of the file that show it, at least one; where nodes show it with several materials, there are several.
     pub meshes: Vec<usize>,
     /// Bytes that its vertices and indices add to the file, without materials; what it shares with a geometry before it is
     /// counted there.
@@ -92,6 +88,14 @@ pub struct WrittenGeometry {
     pub anchors: Vec<Anchor>,
     /// For each written vertex of lines its place on the exact curve; empty unless asked for.
     pub line_anchors: Vec<Anchor>,
+}
+
+impl WrittenGeometry {
+    /// The first mesh of the file that shows it: they differ by their materials alone.
+    #[must_use]
+    pub fn mesh(&self) -> usize {
+        self.meshes.first().copied().unwrap_or(0)
+    }
 }
 
 /// What is known of a morph target beyond its bytes.
@@ -192,8 +196,7 @@ pub fn write(checked: Checked<'_>, form: &Form) -> Result<Written, WriteError> {
     }
     let known = |(index, geometry): (usize, &Geometry)| WrittenGeometry {
         name: geometry.name.clone(),
-        mesh: meshes[index].first().copied().unwrap_or(0),
-        meshes: meshes[index].clone(),
+        meshes: std::mem::take(&mut meshes[index]),
         bytes: shared[index].2,
         deviation: geometry.deviation,
         tolerance: geometry.tolerance,
@@ -214,11 +217,9 @@ pub fn write(checked: Checked<'_>, form: &Form) -> Result<Written, WriteError> {
         |level: &LevelUse| WrittenLevel { level: *level, geometry: scene.meshes[level.mesh].geometry };
     let levels = scene.meshes.iter().filter(|mesh| !mesh.levels.is_empty());
     let levels = levels.map(|mesh| mesh.levels.iter().map(written).collect()).collect();
-    let collider_meshes = scene.meshes.len()..writer.root.meshes.len();
     Ok(Written {
         bytes: writer.finish()?,
         pictures,
-        collider_meshes,
         geometries,
         animations,
         colliders: scene.colliders.clone(),

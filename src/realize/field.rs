@@ -89,6 +89,7 @@ impl Maker<'_> {
         if !made.wire.points.is_empty() {
             return Err(refuse(SolidFault::Lines { part: 0 }));
         }
+        Working::Distant.check(made.mesh.triangles.len(), &self.model.limits)?;
         let check = if may_cross(self.model, part) { Check::Crossings } else { Check::Trusted };
         let Body { points, triangles, normals } = body(&made.mesh, check).map_err(refuse)?;
         Ok((Arc::new(Distance::new(points, triangles, normals)), made.deviation))

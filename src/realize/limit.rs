@@ -35,6 +35,8 @@ pub(super) enum Working {
     Combined,
     /// It is one of those that are wrapped by a hull.
     Wrapped,
+    /// It is one of those whose distance a field asks for: what they meet in and boxes around them stand beside it.
+    Distant,
 }
 
 impl Working {
@@ -57,6 +59,7 @@ impl Working {
             Self::Subdivided => 200,
             Self::Field | Self::Deformed | Self::Displaced => 320,
             Self::Wrapped => 500,
+            Self::Distant => 560,
             Self::Combined => 800,
         }
     }

@@ -67,7 +67,7 @@ fn of_bodies(
 ) -> (String, ColliderFacts) {
     let first = &bodies[0];
     let shape = written.geometries.iter().find(|geometry| geometry.name == first.shape);
-    let geometry = shape.map(|shape| &file.geometries[shape.mesh]);
+    let geometry = shape.map(|shape| &file.geometries[shape.mesh()]);
     let maps: Vec<DAffine3> = bodies
         .iter()
         .map(|body| DAffine3::from_rotation_translation(body.rotation, body.translation).inverse())

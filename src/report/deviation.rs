@@ -53,7 +53,7 @@ pub fn deviation_maps(
     let plain = unpacked(&written.bytes)?;
     let file = read(&plain)?;
     let map = |(known, handle): (&WrittenGeometry, &ShapeHandle)| {
-        let geometry = &file.geometries[known.mesh];
+        let geometry = &file.geometries[known.mesh()];
         let sources = sources(model, *handle);
         let count = geometry.indices.len() / 3;
         if !sources.known() || known.anchors.len() != geometry.positions.len() {

@@ -62,8 +62,8 @@ pub(super) fn heights(
             Some(lengths) => lengths,
             none => none.insert(stored_lengths(&written.bytes)?),
         };
-        let mesh_bytes = mesh_bytes(&file.root, known.mesh, lengths);
-        let triangles = file.geometries[known.mesh].indices.len() as u64 / 3;
+        let mesh_bytes = mesh_bytes(&file.root, known.mesh(), lengths);
+        let triangles = file.geometries[known.mesh()].indices.len() as u64 / 3;
         let (columns, rows) = (field.columns() as u64, field.rows() as u64);
         let samples = columns * rows;
         let per_sample = |count: u64| count as f64 / samples as f64;

@@ -332,7 +332,7 @@ pub fn measure(
         // Where triangles were taken away, corners say nothing of where on the surface the others belong.
         let anchored = about.measure && !levels::is_thinned(written, index);
         let measured = (anchored
-            .then(|| measure_deviation(&file.geometries[known.mesh], known, model, *handle)))
+            .then(|| measure_deviation(&file.geometries[known.mesh()], known, model, *handle)))
         .flatten();
         let mut own = shape_facts(&file, known, (model, *handle), measured)?;
         own.meshes = meshes(&file, &known.meshes, &known.name);
@@ -384,7 +384,7 @@ fn shape_facts(
     (model, handle): (&Model, ShapeHandle),
     measured: Option<f64>,
 ) -> Result<ShapeFacts, ReportError> {
-    let geometry = &file.geometries[known.mesh];
+    let geometry = &file.geometries[known.mesh()];
     let mut facts = mesh_facts(geometry)?;
     let lines = line_facts(geometry);
     if geometry.parts.is_empty() {

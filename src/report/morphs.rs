@@ -35,9 +35,9 @@ pub(super) fn morphs(
     if known.targets.is_empty() {
         return Ok(IndexMap::new());
     }
-    let geometry = &file.geometries[known.mesh];
+    let geometry = &file.geometries[known.mesh()];
     let place = |vertex: usize| glam::Vec3::from_array(geometry.position(vertex)).as_dvec3();
-    let targets = file.targets(known.mesh)?;
+    let targets = file.targets(known.mesh())?;
     let facts = targets.into_iter().zip(&known.targets).map(|(target, known)| {
         let at = |(vertex, moved): (usize, &DVec3)| place(vertex) + *moved;
         let bounds = Bounds::of_points(target.positions.iter().enumerate().map(at));

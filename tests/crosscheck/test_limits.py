@@ -51,6 +51,13 @@ GROWING: dict[str, tuple[Callable[[float], str], list[float]]] = {
         lambda t: f"[shape.s]\ntolerance = {t}\n[shape.s.implicit]\nfield = {{ sphere = {{ radius = 1 }} }}\n",
         [3e-4, 6e-5, 1e-8],
     ),
+    "distance": (
+        lambda t: (
+            f"tolerance = {t}\n[field.f.shape]\nof = 'a'\n[shape.s.implicit]\nfield = 'f'\n"
+            "[shape.a.torus]\nradius = 1\ntube-radius = 0.3\n[node.n]\nshape = 's'\n"
+        ),
+        [1e-2, 1e-4, 1e-8],
+    ),
     "solid": (
         lambda t: (
             f"tolerance = {t}\n[shape.s.difference]\nof = ['a', 'b']\n{BALL}[shape.b]\nat = [0.5, 0, 0]\n"
